@@ -24,17 +24,12 @@ from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.player import Played
 from sgcad_core.formats.openscenario.reading.files import Variation, play_file, variations
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
+from sgcad_core.kinds import ACTORS, kind_of_letter
 from sgcad_core.metrics import measure
-from sgcad_core.records.specs import ActorKind
 from sgcad_core.result import CaseRecord
 
 BESIDE_M = 60.0
 """The map is drawn as far as this around where entities go."""
-_KINDS: dict[str, ActorKind] = {
-    "car": "car", "van": "van", "truck": "truck", "semitrailer": "trailer", "trailer": "trailer", "bus": "bus",
-    "motorbike": "motorcycle", "bicycle": "bicycle", "train": "bus", "tram": "bus", "Pedestrian": "pedestrian",
-    "MiscObject": "object",
-}  # fmt: skip
 
 
 def play(file: Path, out: Path, given: Sequence[str], maps: Sequence[Path], most: int, until_s: float) -> list[Path]:
@@ -91,8 +86,15 @@ def _there(played: Played, name: str, t_s: float) -> bool:
 
 
 def _info(name: str, body: Body) -> ActorInfo:
-    kind = _KINDS.get(body.category) or _KINDS.get(body.kind, "car")
-    return ActorInfo(id=name, type=kind, length_m=body.box.length_m, width_m=body.box.width_m, maneuver="other")
+    return ActorInfo(id=name, type=_kind(body), length_m=body.box.length_m, width_m=body.box.width_m, maneuver="other")
+
+
+def _kind(body: Body) -> str:
+    """The kind that is nearest to an entity: of its category, else the usual one of its sort."""
+    if body.kind != "Vehicle":
+        return kind_of_letter("P" if body.kind == "Pedestrian" else "O")
+    known = (r.id for r in ACTORS.values() if r.axles and body.category in (r.category, *r.also))
+    return next(known, kind_of_letter("V"))
 
 
 def _played_row(variation: Variation, played: Played, of: int) -> dict[str, Any]:

@@ -175,19 +175,19 @@
     const p = pose(actor, now), l = actor.length_m, w = actor.width_m, thin = 1.2 / box.scale;
     ink.save(); ink.translate(p.x, p.y); ink.rotate(p.heading);
     ink.beginPath();
-    if (actor.type === "pedestrian") ink.arc(0, 0, Math.max(l, w) / 2, 0, 7); else ink.roundRect(-l / 2, -w / 2, l, w, Math.min(w * 0.22, 0.5));
+    if (actor.outline === "round") ink.arc(0, 0, Math.max(l, w) / 2, 0, 7); else ink.roundRect(-l / 2, -w / 2, l, w, Math.min(w * 0.22, 0.5));
     if (lit.has(actor.id)) { ink.strokeStyle = COLOR.halo; ink.lineWidth = 9 / box.scale; ink.stroke(); }
     ink.fillStyle = actor.color; ink.strokeStyle = "#fff"; ink.lineWidth = thin * 1.5;
     if (layer.assumed && assumedOf(actor.id).length) ink.setLineDash([5 / box.scale, 4 / box.scale]);   // told: a whole outline
     ink.shadowColor = "rgba(0,0,0,.45)"; ink.shadowBlur = 7; ink.fill(); ink.shadowBlur = 0; ink.stroke(); ink.setLineDash([]);
     if (Math.cos(p.roll) < 0.5) drawBelly(l, w, p.roll);
-    else if (!["pedestrian", "object", "trailer"].includes(actor.type) && w > 1) {
+    else if (actor.outline === "cab" && w > 1) {
       const glass = l / 2 - Math.min(l * 0.3, 1.9);
       ink.fillStyle = "rgba(15,25,35,.62)"; ink.beginPath();                       // windshield: which way is front
       ink.moveTo(glass, -w * 0.4); ink.lineTo(glass + 0.6, -w * 0.34); ink.lineTo(glass + 0.6, w * 0.34); ink.lineTo(glass, w * 0.4); ink.fill();
       ink.fillStyle = "#fff6cf"; for (const s of [-1, 1]) ink.fillRect(l / 2 - 0.28, s * w * 0.33 - 0.18, 0.2, 0.36);
     }
-    if (w <= 1 && actor.type !== "pedestrian") { ink.fillStyle = "#fff"; ink.beginPath(); ink.arc(l * 0.3, 0, w * 0.2, 0, 7); ink.fill(); }
+    if (w <= 1 && actor.outline !== "round") { ink.fillStyle = "#fff"; ink.beginPath(); ink.arc(l * 0.3, 0, w * 0.2, 0, 7); ink.fill(); }
     ink.restore();
   }
   function labelPlace(actor) {                           // beside the box, away from the others where they are near

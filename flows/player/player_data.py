@@ -164,7 +164,7 @@ def _track(mover: Mover) -> Track:
 
 
 def _actor(mover: Mover) -> dict[str, Any]:
-    return {**mover.info.model_dump(), "color": mover.color, **_path(mover.track)}
+    return {**mover.info.model_dump(), "outline": mover.info.record.outline, "color": mover.color, **_path(mover.track)}
 
 
 def _path(track: Trajectory) -> dict[str, Any]:

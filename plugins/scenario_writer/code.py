@@ -22,7 +22,8 @@ from sgcad_core.formats.openscenario.playing.player import entity_boxes
 from sgcad_core.formats.openscenario.playing.timed_motion import BoxShape
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
-from sgcad_core.records.specs import SIZE_M, ActorId, ActorKind, Contact, Maneuver, Spec
+from sgcad_core.kinds import actor_kind
+from sgcad_core.records.specs import ActorId, ActorKind, Contact, Maneuver, Spec
 from sgcad_core.roads.describe import describe_network
 
 
@@ -111,7 +112,7 @@ class Code(ScenarioWriter):
 
 
 def _actor(actor: CodedActor, box: BoxShape | None) -> ActorInfo:
-    length, width = (box.length_m, box.width_m) if box else SIZE_M[actor.kind]
+    length, width = (box.length_m, box.width_m) if box else actor_kind(actor.kind).size
     return ActorInfo(id=actor.id, type=actor.kind, length_m=length, width_m=width, maneuver=actor.maneuver)
 
 

@@ -22,7 +22,8 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.routes_xml import movers
 from sgcad_core.interfaces import Ask, ScenarioWriter
-from sgcad_core.records.specs import SIZE_M, Spec
+from sgcad_core.kinds import actor_kind
+from sgcad_core.records.specs import Spec
 
 
 class VehicleInterpretation(Spec):
@@ -84,7 +85,7 @@ def _interpret(context: Context, ask: Ask, attempt: int, edges: str) -> VehicleI
 
 
 def _actor(actor: CodedActor, size: tuple[float | None, float | None]) -> ActorInfo:
-    usual = SIZE_M[actor.kind]
+    usual = actor_kind(actor.kind).size
     length, width = size[0] or usual[0], size[1] or usual[1]  # a missing size is a finding of its own
     return ActorInfo(id=actor.id, type=actor.kind, length_m=length, width_m=width, maneuver=actor.maneuver)
 

@@ -20,7 +20,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.findings import Finder
 from sgcad_core.interfaces import Ask
-from sgcad_core.kinds import DRIVEWAY, RAMP
+from sgcad_core.kinds import DRIVEWAY, RAMP, actor_kind
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
 from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.reading.motion.motion_record import Access
@@ -49,7 +49,6 @@ Action = Literal[
     "departing_road_left", "departing_road_right", "backing", "other", "strikes",
 ]  # fmt: skip
 """What an actor does in an event: a maneuver, or the contact itself."""
-_DRIVES: tuple[ActorKind, ...] = ("car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle")
 _SAME, _OPPOSITE = math.radians(45), math.radians(135)
 
 
@@ -126,7 +125,7 @@ def _faults(parsed: Representation) -> list[Finding]:
     """Events of actors without a role, and contacts without a partner."""
     ids = [role.id for role in parsed.roles]
     found = []
-    if not any(role.kind in _DRIVES for role in parsed.roles):
+    if not any(actor_kind(role.kind).drives for role in parsed.roles):
         found.append(_finding("no role drives", "roles", "", "give the vehicle of the crash a role"))
     for i, event in enumerate(parsed.events):
         if event.actor not in ids:
@@ -140,7 +139,7 @@ def _faults(parsed: Representation) -> list[Finding]:
 # ------------------------------------------------------------------ templates
 def facts_of(parsed: Representation) -> CrashFacts:
     """The parse in the form in which the project's rules place vehicles on a network."""
-    driving = tuple(_vehicle(role, parsed) for role in parsed.roles if role.kind in _DRIVES)
+    driving = tuple(_vehicle(role, parsed) for role in parsed.roles if actor_kind(role.kind).drives)
     return CrashFacts(
         driving,
         contacts=_strikes(parsed),
@@ -192,8 +191,8 @@ def _areas(event: SceneEvent, striker: Role, struck: Role) -> tuple[Area, Area]:
 
 
 def _side(striker: Role, struck: Role) -> Area:
-    if struck.kind == "object" or striker.heading is None or struck.heading is None:
-        return "front" if struck.kind == "object" else "back"
+    if actor_kind(struck.kind).thing or striker.heading is None or struck.heading is None:
+        return "front" if actor_kind(struck.kind).thing else "back"
     across = math.remainder(angle_of(striker.heading) - angle_of(struck.heading), math.tau)
     if abs(across) <= _SAME:
         return "back"
@@ -208,7 +207,7 @@ def _contact(c: ContactFacts) -> Contact:
 
 def _beside(role: Role, driver: Actor) -> Actor:
     """People and objects stand or cross where the first vehicle drives."""
-    still = role.kind in ("object", "trailer")
+    still = not (actor_kind(role.kind).drives or actor_kind(role.kind).walks)
     return Actor(
         id=role.id, kind=role.kind, road=driver.road, direction=driver.direction, speed_mph=role.speed_mph,
         maneuver="stopped" if still else "straight",

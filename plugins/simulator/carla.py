@@ -22,11 +22,6 @@ from sgcad_core.interfaces import Simulator
 
 APART_M = 2.0
 """Between the waypoints that a map is sampled at."""
-_BLUEPRINTS = {
-    "pedestrian": "walker.pedestrian.0001", "bicycle": "vehicle.gazelle.omafiets", "object": "static.prop.barrel",
-    "motorcycle": "vehicle.yamaha.yzf", "truck": "vehicle.carlamotors.firetruck", "trailer": "static.prop.container",
-    "bus": "vehicle.mitsubishi.fusorosa", "van": "vehicle.mercedes.sprinter",
-}  # fmt: skip
 
 
 class Carla(Simulator):
@@ -93,7 +88,7 @@ def _replay(
 
 
 def _spawn(carla: Any, world: Any, actor: ActorInfo, t: Trajectory) -> Any:  # pragma: no cover - needs a server
-    blueprint = world.get_blueprint_library().find(_BLUEPRINTS.get(actor.type, "vehicle.tesla.model3"))
+    blueprint = world.get_blueprint_library().find(actor.record.blueprint)
     body = world.spawn_actor(blueprint, _transform(carla, t, 0, lift_m=1.0))
     body.set_simulate_physics(False)
     return body

@@ -121,7 +121,7 @@ def _starts(
     found = []
     for motion in motions:
         actor = kinds[motion.actor]
-        if actor.type in ("pedestrian", "object") or actor.maneuver in _OFF_ROAD or not _drives(motion, until):
+        if actor.record.laneless or actor.maneuver in _OFF_ROAD or not _drives(motion, until):
             continue
         start = np.array([[motion.x_m[0], motion.y_m[0]]])
         away = min(float(distance_to(line, start)[0]) for line in lines)

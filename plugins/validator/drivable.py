@@ -12,7 +12,7 @@ from typing import ClassVar, Literal
 
 from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.interfaces import Validator
-from sgcad_core.metrics.drivability import WHEELED, deepest_overlap, driving_peaks, first_touches
+from sgcad_core.metrics.drivability import deepest_overlap, driving_peaks, first_touches
 from sgcad_core.records.specs import Actor, BehaviorSpec, size_m
 
 
@@ -54,7 +54,7 @@ def _excesses(scenario: Scenario, behavior: BehaviorSpec) -> Iterator[tuple[Acto
     touches = first_touches(scenario.planned, sizes)
     motions = {m.actor: m for m in scenario.planned}
     for actor in behavior.actors:
-        if actor.kind not in WHEELED or actor.id not in motions:
+        if not actor.record.wheeled or actor.id not in motions:
             continue
         seen = driving_peaks(
             motions[actor.id], sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing"

@@ -8,6 +8,7 @@ from research.generator.clauses.clause_words import OBJECT, PERSON
 from research.generator.crash.vehicles import COLORS, YEARS, body_text, model_text
 from research.generator.crash.world import Actor, Crash
 from research.generator.words import NUMBERS
+from sgcad_core.kinds import actor_kind
 
 STYLES = {
     "V{n}": 44, "Vehicle #{n}": 16, "Vehicle {w}": 10, "Vehicle {n}": 9, "Vehicle # {n}": 5, "vehicle {w}": 4,
@@ -34,7 +35,7 @@ class Mentions:
             actor.model = model_text(rng, actor.kind) if actor.vehicle else self._other(actor)
 
     def _other(self, actor: Actor) -> str:
-        if actor.kind == "object":
+        if actor_kind(actor.kind).thing:
             return self.rng.choice(OBJECT.side(False)).format(d=self.rng.randint(10, 90))
         on_foot = PERSON["pedestrian"].side(False)
         age = self.rng.randint(8, 80)
@@ -94,7 +95,7 @@ class Mentions:
 
     def _year_model(self, index: int, actor: Actor, body_odds: float) -> str:
         color = f"{self.rng.choice(COLORS)} " if not self.ciren and self.rng.random() < 0.15 else ""
-        needs_body = actor.kind in ("truck", "motorcycle", "bus")
+        needs_body = not actor_kind(actor.kind).usual
         body = body_text(self.rng, actor.kind) if needs_body or self.rng.random() < body_odds else ""
         comma = "," if self.ciren else ""
         return f"a {color}{self.years[index]} {actor.model}" + (f"{comma} {body}" if body else "")

@@ -10,7 +10,7 @@ from collections.abc import Set
 from typing import Any
 
 from research.generator.crash.world import COMPASS, Access, Actor, Crash, Leg
-from sgcad_core.kinds import PLAIN
+from sgcad_core.kinds import PLAIN, actor_kind
 
 Json = dict[str, Any]
 GUESS = 0.25
@@ -21,7 +21,6 @@ SURE = 1.0
 RARE = 2.0
 """Of a value that is told and learned late: a curve, a speed or its limit, light and weather, and kinds that are
 seldom seen. Not of maneuvers: a model that leans to the rare ones reads them into reports that tell the usual one."""
-USUAL = {"car", "suv", "pickup", "van"}
 CONTACT = 6.0
 THIRD_LEG = 3.0
 """Of the places of three legs: in words a turn and a heading, told apart, mostly tell where the third one lies."""
@@ -146,7 +145,7 @@ class Targets:
         named = f"lane.{actor.id}"
         beside = self._changes and named not in known and self._lane(actor) is None
         self._unsure(path, *(("lane",) if named in known - self.sure or beside else ()))
-        if f"kind.{actor.id}" in known and actor.kind not in USUAL:
+        if f"kind.{actor.id}" in known and not actor_kind(actor.kind).usual:
             self.weights[(*path, "kind")] = RARE
         for key in ("direction", "length_m", "width_m"):
             self.weights[(*path, key)] = 0.1
@@ -218,9 +217,9 @@ def drawn_facts(crash: Crash, control: bool, arrows: bool, access: bool) -> set[
         passes = actor.maneuver == "overtaking" and sum(other.leg == actor.leg for other in crash.actors) < 2
         facts -= {f"exit.{actor.id}"} if actor.meant else set()
         facts |= {f"man.{actor.id}"} if actor.maneuver != "slowing" and not passes else set()
-        if actor.kind in ("truck", "bus", "object", "pedestrian", "bicycle", "motorcycle"):
+        if not actor_kind(actor.kind).usual:
             facts.add(f"kind.{actor.id}")
     for index, contact in enumerate(crash.contacts):
         facts |= {f"contact.{index}"} if contact.striker_area != contact.struck_area else set()
-        facts |= {f"areas.{index}"} if crash.actors[contact.struck].kind != "pedestrian" else set()
+        facts |= {f"areas.{index}"} if not actor_kind(crash.actors[contact.struck].kind).walks else set()
     return facts

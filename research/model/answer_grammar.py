@@ -13,14 +13,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from sgcad_core.kinds import MANEUVERS as MANEUVERS
-from sgcad_core.kinds import ROADS
+from sgcad_core.kinds import ROADS, learned_actors
 
 Path = tuple[Any, ...]
 
 COMPASS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 TURNS = ("left", "through", "right", "left_through", "through_right", "left_right", "any")
 MEDIANS = ("none", "painted", "raised", "grass", "barrier")
-KINDS = ("car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "trailer", "object")
+KINDS = learned_actors()
 AREAS = ("front", "back", "left", "right")
 LIGHTS = ("day", "dusk", "dawn", "dark", "dark_lit")
 WEATHERS = ("clear", "cloudy", "rain", "snow", "sleet", "fog")

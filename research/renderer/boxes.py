@@ -13,20 +13,6 @@ from research.renderer.lines import Points
 
 Size = tuple[float, float]
 """Length and width, metres."""
-SIZES = {
-    "car": (4.8, 2.0),
-    "suv": (4.9, 2.1),
-    "pickup": (5.6, 2.1),
-    "van": (5.1, 2.1),
-    "truck": (13.0, 2.7),
-    "bus": (11.0, 2.7),
-    "motorcycle": (3.4, 1.5),
-    "bicycle": (3.0, 1.3),
-    "pedestrian": (1.2, 1.2),
-    "object": (1.4, 1.4),
-    "trailer": (10.0, 2.6),
-}
-"""Length and width in metres as drawn: what is small is drawn larger than it is, or nobody could tell what it is."""
 SIDE = {"front": 0.0, "left": math.pi / 2, "back": math.pi, "right": -math.pi / 2}
 
 

@@ -16,10 +16,11 @@ from research.renderer.boxes import Pose, corners, within
 from research.renderer.lines import Points
 from research.renderer.pen import BLACK, Color, Pen
 from research.renderer.poses import Track
+from sgcad_core.kinds import actor_kind
+from sgcad_core.kinds.actors import Symbol
 
 WHITE: Color = (255, 255, 255)
 GRAY: Color = (120, 120, 120)
-TWO_WHEELS = ("motorcycle", "bicycle")
 NAME = 11
 """Pixels of a name beside a symbol."""
 
@@ -38,30 +39,30 @@ class Look:
 
 def vehicle(rng: Random, pen: Pen, track: Track, pose: Pose, color: Color, look: Look) -> None:
     """One actor at one of its poses."""
-    kind, size, style, label = track.actor.kind, track.size, look.style, look.label
-    if kind == "object":
+    symbol, size, style, label = actor_kind(track.actor.kind).symbol, track.size, look.style, look.label
+    if symbol == "thing":
         _thing(pen, pose, size, color, rng.choice(("", "tree", "pole")))
         return
-    if kind == "pedestrian":
+    if symbol == "person":
         _person(pen, pose, size, color, track.actor.id)
         return
     fill: Color = tuple(round(0.3 * c + 0.7 * 255) for c in color) if look.ghost else color  # type: ignore[assignment]
-    if kind in TWO_WHEELS:
-        _two_wheels(pen, pose, size, fill, kind)
+    if symbol in ("motorcycle", "bicycle"):
+        _two_wheels(pen, pose, size, fill, symbol)
         if label:
             _beside(pen, pose, size, track.actor.id)
         return
-    if kind == "truck":
+    if symbol == "truck":
         _truck(pen, pose, size, fill)
     elif look.dashed:
         pen.polygon(corners(pose, size), fill, None)
         _dashes(pen, corners(pose, size))
     else:
         pen.polygon(corners(pose, size), fill, BLACK, 1)
-    if kind == "bus":
+    if symbol == "bus":
         _windows(pen, pose, size, fill)
     elif style == "icon":
-        _glass(pen, pose, size, kind, WHITE if fill != WHITE else GRAY)
+        _glass(pen, pose, size, symbol, WHITE if fill != WHITE else GRAY)
     if style == "box":
         _triangle(pen, pose, size, WHITE if sum(fill) < 700 else GRAY)
     if label:
@@ -101,11 +102,11 @@ def _triangle(pen: Pen, pose: Pose, size: tuple[float, float], color: Color) -> 
     pen.polygon(within(pose, size, [(0.47, 0.0), (0.2, 0.34), (0.2, -0.34)]), color, BLACK, 1)
 
 
-def _glass(pen: Pen, pose: Pose, size: tuple[float, float], kind: str, color: Color) -> None:
+def _glass(pen: Pen, pose: Pose, size: tuple[float, float], symbol: Symbol, color: Color) -> None:
     """A curved windshield behind the hood, and of a car another before its trunk; what has a longer body has a shorter
     hood."""
-    hood = 0.22 if kind == "car" else 0.32
-    bands = [(hood, 1.0)] + ([(-0.3, -1.0)] if kind == "car" else [(-0.08, 1.0)] if kind == "pickup" else [])
+    hood = 0.22 if symbol == "car" else 0.32
+    bands = [(hood, 1.0)] + ([(-0.3, -1.0)] if symbol == "car" else [(-0.08, 1.0)] if symbol == "pickup" else [])
     for at, bends in bands:
         outer = [(at + bends * (0.05 - 0.2 * side * side), side) for side in (-0.44, -0.22, 0.0, 0.22, 0.44)]
         inner = [(along - bends * 0.1, 0.9 * side) for along, side in reversed(outer)]
@@ -137,10 +138,10 @@ def _windows(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color) -> No
     _part(pen, pose, size, (0.44, 0.0), (0.05, 0.8), pane)
 
 
-def _two_wheels(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color, kind: str) -> None:
+def _two_wheels(pen: Pen, pose: Pose, size: tuple[float, float], fill: Color, symbol: Symbol) -> None:
     """Handlebars ahead; a motorcycle with a body between dark wheels, a bicycle of two rings and a bar."""
     bars = pen.px(within(pose, size, [(0.24, 0.5), (0.24, -0.5)]))
-    if kind == "motorcycle":
+    if symbol == "motorcycle":
         for along in (-0.38, 0.38):
             _part(pen, pose, size, (along, 0.0), (0.24, 0.36), BLACK)
         pen.polygon(

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from research.generator.crash.world import Actor, Contact, Crash
-from research.renderer.boxes import SIDE, SIZES, Pose, Size, half, overlap, wrap
+from research.renderer.boxes import SIDE, Pose, Size, half, overlap, wrap
 from research.renderer.lines import STEP, Ground, Points, headings, shift
+from sgcad_core.kinds import actor_kind
 
 NEAR = 0.8
 """Metres by which one may be put beside its own way and is still on it."""
@@ -42,13 +43,17 @@ class Track:
     """Where it would have driven on, of one whose turn nobody could see yet."""
 
 
+def _scaled(size: Size, scale: float) -> Size:
+    return scale * size[0], scale * size[1]
+
+
 class Stage:
     """Places all actors of a crash on its ground."""
 
     def __init__(self, rng: Random, crash: Crash, ground: Ground, scale: float, rests: float = 0.5) -> None:
         """`scale`: of the vehicles; `rests`: share of them whose way to rest is drawn."""
         self.rng, self.crash, self.ground, self.rests = rng, crash, ground, rests
-        self.sizes: list[Size] = [(scale * SIZES[a.kind][0], scale * SIZES[a.kind][1]) for a in crash.actors]
+        self.sizes: list[Size] = [_scaled(actor_kind(a.kind).drawn_m, scale) for a in crash.actors]
         self.ways = [self._parked(ground.way(a), a) if a.maneuver == "parked" else ground.way(a) for a in crash.actors]
         self.faces = [headings(way) for way in self.ways]
         """Radians along every way."""
@@ -192,7 +197,7 @@ class Stage:
     def _track(self, index: int, others: Mapping[int, Track]) -> Track:
         actor = self.crash.actors[index]
         track = Track(actor, self.sizes[index])
-        if actor.maneuver not in ("stopped", "parked") and actor.kind != "object":
+        if actor.maneuver not in ("stopped", "parked") and not actor_kind(actor.kind).thing:
             track.poses += self._before(index, others)
             track.ahead = self._unseen_turn(index)
         track.contact = len(track.poses)
@@ -227,7 +232,7 @@ class Stage:
 
     def _before(self, index: int, others: Mapping[int, Track]) -> list[Pose]:
         at, rng = self.at[index], self.rng
-        if self.crash.actors[index].kind in ("pedestrian", "bicycle"):
+        if actor_kind(self.crash.actors[index].kind).exposed:
             return [Pose(at.x - 6 * math.cos(at.heading), at.y - 6 * math.sin(at.heading), at.heading)]
         lead = self._leader(index)
         ahead = others[lead] if lead is not None else None

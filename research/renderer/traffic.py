@@ -14,6 +14,7 @@ from research.renderer.boxes import Pose, overlap
 from research.renderer.lines import Points
 from research.renderer.pen import BLACK, Color, Pen
 from research.renderer.poses import Track
+from sgcad_core.kinds import actor_kind
 
 COLORS: dict[int, tuple[Color, ...]] = {
     1: ((255, 0, 0), (255, 0, 0), (230, 20, 20), (240, 15, 40), (190, 15, 20), (235, 40, 90)),
@@ -90,7 +91,7 @@ def _color(rng: Random, track: Track, labels: bool) -> Color:
     if not track.actor.vehicle:
         return (
             rng.choice(((90, 60, 20), (20, 110, 40), (20, 20, 20)))
-            if track.actor.kind == "object"
+            if actor_kind(track.actor.kind).thing
             else rng.choice(((250, 150, 30), (20, 20, 20), (150, 30, 160)))
         )
     if rng.random() < 0.03 and labels:

@@ -6,10 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from sgcad_core.account.inputs import Made, is_told
 from sgcad_core.account.records import Item
-from sgcad_core.records.specs import SIZE_M
-
-_LIKE = {"suv": "car", "van": "car"}
-"""Kinds that reports mix."""
+from sgcad_core.kinds import actor_kind
 
 
 def actor_items(made: Made) -> Iterator[Item]:
@@ -34,9 +31,9 @@ def _kind(made: Made, name: str, kinds: Mapping[str, str]) -> Iterator[Item]:
         return
     if fact and is_told(fact):
         told, seen = str(fact.value), kinds[name]
-        same = _LIKE.get(told, told) == _LIKE.get(seen, seen)
+        same = actor_kind(told).taken_for == actor_kind(seen).taken_for
         yield made.item(same, fact.field, told, seen, why=f"a {seen} drives there")
     towing = made.told.get(f"vehicles.{name}.trailer")
     if towing and is_told(towing):
-        longer = made.sizes[name][0] > SIZE_M[kinds[name]][0] + 1 or any(a[0] == "T" for a in made.tracks)
+        longer = made.sizes[name][0] > actor_kind(kinds[name]).length_m + 1 or any(a[0] == "T" for a in made.tracks)
         yield made.item(longer, towing.field, True, why="it tows nothing")

@@ -17,9 +17,9 @@ from sgcad_core.reading.text.sentence_roles import STORY_ROLES, is_impact
 from sgcad_core.roads.compiled_facts import junctions
 
 _VEHICLE = rule("common.vehicle")
-_COUNTED, _FURTHER, _ANIMAL, _MANY_LEGS, _INTRODUCED = (
-    rule("account.counted"), rule("account.further"), rule("account.animal"), rule("account.many_legs"),
-    rule("account.introduced"),
+_CALLED, _COUNTED, _FURTHER, _ANIMAL, _MANY_LEGS, _INTRODUCED = (
+    rule("account.called"), rule("account.counted"), rule("account.further"), rule("account.animal"),
+    rule("account.many_legs"), rule("account.introduced"),
 )  # fmt: skip
 _TURNING = rule("deeds.turning")
 _ASIDE = ("lane_change", "merge", "overtaking", "crossing_centerline", "turn_", "u_turn", "departing_road")
@@ -44,6 +44,7 @@ def unread_items(made: Made) -> Iterator[Item]:
 
 def _of_sentence(made: Made, sentence: Sentence) -> Iterator[Item]:
     yield from _numbers(made, sentence)
+    yield from _called(made, sentence)
     yield from _further(made, sentence)
     yield from _struck(made, sentence)
     yield from _places(made, sentence)
@@ -76,6 +77,17 @@ def _numbers(made: Made, sentence: Sentence) -> Iterator[Item]:
         if count > there:
             text = f"{count} vehicles are told ({match[0]!r})"
             yield _lacks(sentence, "vehicles", str(count), text, f"the scenario has {there}")
+
+
+def _called(made: Made, sentence: Sentence) -> Iterator[Item]:
+    """What a vehicle is said to be, where no word of it is of a kind that there is and a usual one is drawn."""
+    for match in _CALLED.finditer(sentence.text):
+        name = made.reading.actor(match["id"])
+        fact = made.told.get(f"vehicles.{name}.kind")
+        if fact is not None and fact.basis == "default":
+            words = match["apposed"] or match["said"]
+            text, reason = f"{name} is called {words!r}", f"no such kind is known: a {fact.value} is drawn"
+            yield _lacks(sentence, "kind", words, text, reason)
 
 
 def _further(made: Made, sentence: Sentence) -> Iterator[Item]:

@@ -19,6 +19,7 @@ from sgcad_core.case.evidence import Diagram as Diagram
 from sgcad_core.findings import Finding as Finding
 from sgcad_core.findings import Hold as Hold
 from sgcad_core.findings import Severity as Severity
+from sgcad_core.kinds import ActorRecord, actor_kind
 from sgcad_core.record_base import Record as Record
 from sgcad_core.records.facts import Fact as Fact
 from sgcad_core.records.second_reader import Heard as Heard
@@ -120,6 +121,11 @@ class ActorInfo(Record):
     length_m: float
     width_m: float
     maneuver: Maneuver
+
+    @property
+    def record(self) -> ActorRecord:
+        """What is known of its kind."""
+        return actor_kind(self.type)
 
 
 class Trajectory(Record):

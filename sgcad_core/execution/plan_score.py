@@ -16,7 +16,7 @@ import numpy as np
 from sgcad_core.case.records import Scenario, Trajectory
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.execution.contact import first_contact, realised
-from sgcad_core.metrics.drivability import WHEELED, driving_peaks, first_touches
+from sgcad_core.metrics.drivability import driving_peaks, first_touches
 from sgcad_core.planner import plan
 from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.maneuver_visible import TURNED_RAD
@@ -75,7 +75,7 @@ def _undrivable(behavior: BehaviorSpec, motions: Sequence[Trajectory]) -> int:
     touches = first_touches(motions, sizes)
     count = 0
     for actor, track in zip(behavior.actors, motions, strict=True):
-        if actor.kind in WHEELED:
+        if actor.record.wheeled:
             motion = driving_peaks(
                 track, sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing"
             )

@@ -13,7 +13,7 @@ import numpy as np
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import ObservedContact, Trajectory
 from sgcad_core.handover.avoidance import avoidance
-from sgcad_core.handover.script import DRIVEN, Script, staging_for
+from sgcad_core.handover.script import Script, staging_for
 from sgcad_core.handover.severity import severity
 
 _STANDS_M = 1e-4
@@ -36,10 +36,7 @@ def contact_figures(script: Script, contact: ObservedContact | None) -> dict[str
         "brake_by_s": {}, "brake_by_m": {}, "steer_by_s": {}, "required_2_s_before_mps2": {},
     }  # fmt: skip
     for name in (contact.actor, contact.other):
-        if (
-            script.info(name).type in DRIVEN
-            and (could := avoidance(staging_for(script, name), (_ASKED_S,))) is not None
-        ):
+        if script.info(name).record.driven and (could := avoidance(staging_for(script, name), (_ASKED_S,))) is not None:
             figures["brake_by_s"][name], figures["brake_by_m"][name] = could.brake_by_s, could.brake_by_m
             figures["steer_by_s"][name] = could.steer_by_s
             figures["required_2_s_before_mps2"][name] = could.required_mps2.get(f"{_ASKED_S:g}")

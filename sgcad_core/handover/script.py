@@ -26,8 +26,6 @@ from sgcad_core.roads.lane_graph import LaneGraph
 BEYOND_S = 15.0
 """Time for which lines go on after the contact."""
 _SLOW_MPS = 0.3
-DRIVEN = frozenset({"car", "suv", "pickup", "van", "truck", "bus", "motorcycle"})
-"""Kinds of actors that a driver can control."""
 _TREND = 4
 """Steps over which the trend of an actor's course is taken."""
 _TIGHTEST_PER_M = 0.2
@@ -69,7 +67,7 @@ class Script:
 
     def ego_of(self, role: str) -> str | None:
         """The first actor of a role that a driver can control."""
-        return next((a.id for a in self.actors if self.roles.get(a.id) == role and a.type in DRIVEN), None)
+        return next((a.id for a in self.actors if self.roles.get(a.id) == role and a.record.driven), None)
 
     def contact_of(self, ego: str) -> ObservedContact | None:
         """The first scripted contact of an actor with an actor that is not coupled to it."""
@@ -81,8 +79,8 @@ class Script:
     def coupled_to(self, ego: str) -> frozenset[str]:
         """Actors that keep their distance from the ego while moving, where either is a trailer."""
         track = {t.actor: t for t in self.trajectories}
-        kinds = {a.id: a.type for a in self.actors}
-        pairs = [a for a in track if a != ego and "trailer" in (kinds[a], kinds[ego])]
+        pulled = {a.id: a.record.pulled for a in self.actors}
+        pairs = [a for a in track if a != ego and (pulled[a] or pulled[ego])]
         return frozenset(a for a in pairs if _coupled(track[ego], track[a], self.sizes))
 
 
@@ -114,8 +112,8 @@ class Staging:
 def staging_for(script: Script, ego: str) -> Staging:
     """The staging with an actor as the ego. Raises ConfigError for an actor that no driver can control."""
     info = script.info(ego)
-    if info.type not in DRIVEN:
-        known = ", ".join(a.id for a in script.actors if a.type in DRIVEN) or "none"
+    if not info.record.driven:
+        known = ", ".join(a.id for a in script.actors if a.record.driven) or "none"
         raise ConfigError(f"{script.case}: {ego} is a {info.type}, which no driver drives; drivable: {known}")
     contact = script.contact_of(ego)
     lines = {t.actor: _line(script, t, _cut(script, ego, t)) for t in script.trajectories}
@@ -165,7 +163,7 @@ def _start(table: Floats) -> tuple[Start, float]:
 def _beyond(script: Script, actor: str, pose: Floats, start: Start, speed_mps: float) -> Floats:
     """(m, 3) poses from the next sample on, along the lanes; the box keeps its angle to its way."""
     info = script.info(actor)
-    graph = script.graph if info.type in DRIVEN or info.type in ("trailer", "bicycle") else LaneGraph({}, (), {})
+    graph = script.graph if info.record.axles else LaneGraph({}, (), {})
     points = continued_line(graph, start, speed_mps * BEYOND_S, info.maneuver)
     along = arc_lengths(points)
     way = np.diff(points, axis=0)

@@ -12,13 +12,13 @@ from collections.abc import Mapping, Sequence
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import ActorInfo, ObservedContact, Record, Trajectory
 from sgcad_core.geometry.plane import Size
-from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, body, collide, mass_kg
+from sgcad_core.kinds import actor_kind, mass_kg
+from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, body, collide
 from sgcad_core.planner.aftermath.wreck_bodies import center_of, separation, touch_points
 from sgcad_core.records.specs import ActorKind
 from sgcad_core.units import MPS_PER_MPH
 
 MPH_PER_MPS = 1 / MPS_PER_MPH
-_PEOPLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle"})
 
 
 class Struck(Record):
@@ -85,7 +85,7 @@ def _body(track: Trajectory, info: ActorInfo, t_s: float) -> Body:
     k = min(max(round(t_s / STEP_S), 0), len(track.t_s) - 1)
     a, b = max(k - 2, 0), max(k - 1, min(1, len(track.t_s) - 1))
     size: Size = (info.length_m, info.width_m)
-    mass = None if info.type == "object" else mass_kg(info.type, size)
+    mass = None if info.record.thing else mass_kg(info.type, info.length_m)
     made = body((float(track.x_m[k]), float(track.y_m[k]), float(track.heading_rad[k])), size, mass)
     if b > a and mass is not None:
         step = (b - a) * STEP_S
@@ -99,7 +99,7 @@ def _struck(
 ) -> Struck:
     delta = math.hypot(*change)
     along = change[0] * math.cos(body.heading) + change[1] * math.sin(body.heading)
-    risk = None if info.type in ("object", "trailer") else fatality_risk(info.type, delta, closing)
+    risk = None if info.record.thing or info.record.pulled else fatality_risk(info.type, delta, closing)
     return Struck(actor=info.id, speed_mps=math.hypot(*before), delta_v_mps=delta, delta_v_ahead_mps=along, risk=risk)
 
 
@@ -110,6 +110,6 @@ def fatality_risk(kind: ActorKind, delta_v_mps: float, closing_mps: float) -> fl
     Accident Analysis and Prevention 25 (1993) 103. People: 1 / (1 + exp(6.9 - 0.090 v)) with v the impact speed in
     km/h, E. Rosen, U. Sander, Pedestrian fatality risk as a function of car impact speed, ibid. 41 (2009) 536.
     """
-    if kind in _PEOPLE:
+    if actor_kind(kind).exposed:
         return 1 / (1 + math.exp(6.9 - 0.090 * closing_mps * 3.6))
     return min((delta_v_mps * MPH_PER_MPS / 71.0) ** 4, 1.0)

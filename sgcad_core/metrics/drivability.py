@@ -16,14 +16,11 @@ import numpy as np
 from sgcad_core.case.records import Record, Trajectory
 from sgcad_core.geometry.plane import Floats, Size, box_gaps, first_overlap, wrap_angle
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.records.specs import ActorKind, Surface
+from sgcad_core.records.specs import Surface
 
 STEP_S = 0.05
 REAR_AXLE = 0.3
 """From the center of a box to its rear axle, as a share of its length."""
-WHEELED: frozenset[ActorKind] = frozenset(
-    {"car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "trailer"}
-)
 _MOVING_MPS = 1.0
 """A slower box has no direction of travel."""
 

@@ -74,7 +74,7 @@ class Role:
         for it."""
         if self.told.spin:
             return 1.0 if self.told.spin == "counterclockwise" else -1.0
-        if self.told.rest.facing_deg is None or self.actor.kind == "object":
+        if self.told.rest.facing_deg is None or self.actor.record.thing:
             return 0.0
         came = float(self.course.path.poses([self.place.station_m])[0, 2])
         turn = math.remainder(compass_rad(self.told.rest.facing_deg) - came, 2 * math.pi)
@@ -145,13 +145,14 @@ class Twist(NamedTuple):
 
 def is_standing(role: Role) -> bool:
     """Whether the actor does not move before contact."""
-    return role.actor.maneuver in STANDING or role.actor.kind == "object"
+    return role.actor.maneuver in STANDING or role.actor.record.thing
 
 
 def usual_speed(role: Role) -> float:
     """Stated speed, else the limit as far as the kind of actor goes, m/s."""
     actor = role.actor
-    top = {"pedestrian": 1.5, "bicycle": 5.5}.get(actor.kind, min(role.course.limit_mps, 26.0))
+    pace = actor.record.pace_mps
+    top = min(role.course.limit_mps, 26.0) if pace is None else pace
     if actor.speed_mph:
         return max(actor.speed_mph * MPS_PER_MPH, 1.0)
     if actor.maneuver == "backing":
@@ -172,7 +173,7 @@ def mismatch(role: Role) -> float:
 
     Seen in the actor's own frame as both pass the meeting place at their usual speeds.
     """
-    if role.side is None or role.actor.kind == "object":
+    if role.side is None or role.actor.record.thing:
         return 0.0
     bearing = _bearing_along(role) if along_with(role) else _bearing_across(role)
     return 0.0 if bearing is None else math.remainder(bearing - facing(role.side), 2 * math.pi)

@@ -57,7 +57,7 @@ def _tries(role: Role) -> Iterator[tuple[Motion, float]]:
 
 
 def _plain(ways: Sequence[Option]) -> list[Option]:
-    return [way for way in ways if not way.twist.angle_rad or way.role.actor.kind == "object"]
+    return [way for way in ways if not way.twist.angle_rad or way.role.actor.record.thing]
 
 
 def place_for_later_contact(scene: Scene, role: Role, partner: str, sides: tuple[Area, Area]) -> bool:
@@ -78,7 +78,7 @@ def place_for_later_contact(scene: Scene, role: Role, partner: str, sides: tuple
 def _struck_by(
     scene: Scene, replay: Motion, way: Option, partner: str, sides: tuple[Area, tuple[Area, Area] | None]
 ) -> bool:
-    motion = in_path_of(way, replay, sides[0]) if way.role.actor.kind == "object" else way.motion
+    motion = in_path_of(way, replay, sides[0]) if way.role.actor.record.thing else way.motion
     if not motion.drivable:
         return False
     found = find_meeting(replay, replace(motion, penalty=0 * motion.penalty), sides[1])

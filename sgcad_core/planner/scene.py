@@ -14,10 +14,11 @@ import numpy as np
 
 from sgcad_core.case.records import ObservedContact, Trajectory
 from sgcad_core.geometry.plane import Box, Floats, Size, contact_area, first_overlap, gaps_where_near
+from sgcad_core.kinds import actor_kind, mass_kg
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
 from sgcad_core.planner.aftermath.hitch import hitched
-from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, body, mass_kg
+from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, body
 from sgcad_core.planner.aftermath.rollover import roll_angles, rolls_over
 from sgcad_core.planner.aftermath.wreck import Wreck
 from sgcad_core.planner.aftermath.wreck_bodies import Mover, Touch
@@ -34,7 +35,6 @@ ROLLING_MPS2 = 2.2
 """Of a vehicle that has a further contact."""
 THROWN_MPS2 = 5.5
 """Of pedestrians, and of two-wheelers on their side, over the ground."""
-_TUMBLE: frozenset[ActorKind] = frozenset({"pedestrian", "bicycle", "motorcycle"})
 _REACTION_S = 0.5
 _BRAKING_MPS2 = 5.0
 _STANDS_MPS, _SHOWN_MPS = 0.02, 2.6
@@ -155,7 +155,7 @@ class Scene:
         return Wreck(movers, self.count, hitches, self.friction, self.restitution, self.again, self.told)
 
     def _mover(self, track: Track) -> Mover:
-        mass = None if track.motion.fixed else track.mass or mass_kg(track.kind, track.size)
+        mass = None if track.motion.fixed else track.mass or mass_kg(track.kind, track.size[0])
         start = body((0.0, 0.0, 0.0), track.size, mass)
         return Mover(track.actor, start, track.driven, self.drag(track), self.runs.get(track.actor))
 
@@ -197,7 +197,7 @@ class Scene:
 
 def usual_drag(kind: ActorKind, grip_mps2: float, along_mps2: float = BRAKED_MPS2) -> Drag:
     """Deceleration after a blow on a surface of some grip: vehicles slow along their wheels, people slide."""
-    if kind in _TUMBLE:
+    if actor_kind(kind).tumbles:
         return Drag(min(THROWN_MPS2, grip_mps2), min(THROWN_MPS2, grip_mps2))
     return Drag(min(along_mps2, grip_mps2), grip_mps2)
 

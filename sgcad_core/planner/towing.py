@@ -22,7 +22,7 @@ def tractors(behavior: BehaviorSpec) -> dict[str, str]:
     """Trailer id -> id of the vehicle that tows it: the one with its number, else one on its road."""
     vehicles = [a for a in behavior.actors if a.id.startswith("V")]
     found: dict[str, str] = {}
-    for trailer in (a for a in behavior.actors if a.kind == "trailer" and not a.id.startswith("V")):
+    for trailer in (a for a in behavior.actors if a.record.pulled and not a.id.startswith("V")):
         tractor = _tractor(trailer, [v for v in vehicles if v.id not in found.values()])
         if tractor is not None:
             found[trailer.id] = tractor.id
@@ -31,7 +31,7 @@ def tractors(behavior: BehaviorSpec) -> dict[str, str]:
 
 def _tractor(trailer: Actor, vehicles: Sequence[Actor]) -> Actor | None:
     same = [v for v in vehicles if (v.road, v.direction) == (trailer.road, trailer.direction)]
-    heavy = [v for v in same if v.kind in ("truck", "pickup", "suv", "van")]
+    heavy = [v for v in same if v.record.hauls]
     numbered = [v for v in vehicles if v.id[1:].lstrip("0") == trailer.id[1:].lstrip("0")]
     return next(iter([*numbered, *heavy, *same]), None)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from sgcad_core.kinds import actor_kind
 from sgcad_core.reading.actors.pedestrians_objects import OtherFacts, others
 from sgcad_core.reading.actors.vehicles import Identity
 from sgcad_core.reading.actors.walkers import Walk, side_facing
@@ -154,7 +155,7 @@ def _without_vehicle(draft: Draft, settled: Settled, beside: tuple[OtherFacts, .
         if other and other.id not in found:
             area = end_of(blow.actor_area) or "front"
             faces = side_facing(draft.walks.get(blow.other, Walk()), settled.headings.get(blow.actor)) or "left"
-            side: Area = "front" if other.kind == "object" else faces
+            side: Area = "front" if actor_kind(other.kind).thing else faces
             found[other.id] = ContactFacts(blow.actor, other.id, area, side, False)
     return tuple(found.values())
 

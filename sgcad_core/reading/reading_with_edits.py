@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from sgcad_core.kinds import kind_of_letter
 from sgcad_core.reading.actors.pedestrians_objects import OtherFacts
 from sgcad_core.reading.contacts.near_crash import NearFacts
 from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
@@ -83,9 +84,9 @@ def _cast(crash: CrashFacts, given: Given) -> CrashFacts:
             continue
         known = name in {v.id for v in crash.vehicles} | {o.id for o in crash.others}
         if value and not known and name.startswith("V"):
-            crash = replace(crash, vehicles=(*crash.vehicles, VehicleFacts(name, "car")))
+            crash = replace(crash, vehicles=(*crash.vehicles, VehicleFacts(name, kind_of_letter("V"))))
         elif value and not known and (name[0] in "PB" or given.get(f"{group}.{name}.kind")):
-            kind: Any = given.get(f"{group}.{name}.kind") or {"P": "pedestrian", "B": "bicycle"}[name[0]]
+            kind: Any = given.get(f"{group}.{name}.kind") or kind_of_letter(name[0])
             crash = replace(crash, others=(*crash.others, OtherFacts(name, kind, str(kind))))
         elif not value and known:
             crash = _without(crash, name)

@@ -13,9 +13,10 @@ from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field, StringConstraints
 
-from sgcad_core.kinds import DRIVEWAY
+from sgcad_core.kinds import DRIVEWAY, ActorRecord, actor_kind
 from sgcad_core.kinds import Maneuver as Maneuver
 from sgcad_core.kinds import RoadKind as RoadKind
+from sgcad_core.records.actor_kind import ActorKind as ActorKind
 from sgcad_core.records.answer_schema import TRAINED, added
 from sgcad_core.records.answer_schema import Spec as Spec
 
@@ -31,9 +32,6 @@ Median = Literal["none", "painted", "raised", "grass", "barrier"]
 RoadArea = Literal["", "rural", "town", "motorway"]
 Beside = Literal["bike_lane", "parking", "shoulder", "sidewalk"]
 """What lies beside the lanes of a road, in this order from the lanes outwards."""
-ActorKind = Literal[
-    "car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "trailer", "object"
-]
 Area = Literal["front", "back", "left", "right"]
 EvasiveManeuver = Literal[
     "none", "braking", "steering", "steering_left", "steering_right", "braking_and_steering",
@@ -194,6 +192,11 @@ class Actor(Spec):
     width_m: Annotated[float, Field(gt=0.1, le=5)] | None = None
     gore: bool = added(False, "in the gore of a ramp: what stands there, or who crosses it into exit_road")
 
+    @property
+    def record(self) -> ActorRecord:
+        """What is known of its kind."""
+        return actor_kind(self.kind)
+
 
 class Contact(Spec):
     """One collision: striker hits struck; areas are the sides of each that touch."""
@@ -244,14 +247,6 @@ class Refusal(Spec):
     missing: Annotated[tuple[str, ...], Field(max_length=12)] = ()
 
 
-SIZE_M: dict[str, tuple[float, float]] = {
-    "car": (4.7, 1.8), "suv": (4.8, 1.9), "pickup": (5.6, 2.0), "van": (5.2, 2.0), "truck": (9.0, 2.5),
-    "bus": (11.5, 2.55), "motorcycle": (2.2, 0.8), "bicycle": (1.8, 0.6), "pedestrian": (0.5, 0.6),
-    "trailer": (12.0, 2.5), "object": (0.5, 0.5),
-}  # fmt: skip
-"""Length and width of an actor whose size the report does not give, metres (typical U.S. fleet of 1990-2007)."""
-
-
 def is_aisle(road: Road | Leg) -> bool:
     """Whether it is an aisle of a parking lot: a driveway with room to park beside it."""
     return road.kind == DRIVEWAY and "parking" in road.beside
@@ -259,5 +254,5 @@ def is_aisle(road: Road | Leg) -> bool:
 
 def size_m(actor: Actor) -> tuple[float, float]:
     """Length and width of an actor's box in metres: as stated, else typical of its kind."""
-    length, width = SIZE_M[actor.kind]
+    length, width = actor.record.size
     return actor.length_m or length, actor.width_m or width

@@ -13,11 +13,12 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from sgcad_core.kinds import ACTORS, kind_of_letter
 from sgcad_core.reading.layout.road_ways import Way, apart, degree, exits, turn_of, ways_of
 from sgcad_core.reading.text.compass import angle_of
 from sgcad_core.records.edits import of_contacts
 from sgcad_core.records.facts import Value
-from sgcad_core.records.specs import Actor, ActorKind, BehaviorSpec, Compass, Contact, Maneuver, NearCrash, RoadSpec
+from sgcad_core.records.specs import Actor, BehaviorSpec, Compass, Contact, Maneuver, NearCrash, RoadSpec
 from sgcad_core.revision.values import ACTOR_FIELDS, CONTACT_FIELDS, actor_of, contacts_of, road_of, way_of
 
 _SKY = ("light", "weather", "surface")
@@ -26,9 +27,6 @@ HEADING_RAD = math.radians(50)
 _MISFIT_RAD = 0.75 * math.pi / 2
 """An exit that is further off the maneuver's turn is none of it."""
 _TURNS: Mapping[Maneuver, float] = {"turn_left": math.pi / 2, "turn_right": -math.pi / 2}
-_KINDS: Mapping[str, ActorKind] = {"V": "car", "P": "pedestrian", "B": "bicycle", "T": "trailer"}
-"""What an added actor is unless more is said, by the letter of its id."""
-_MOVES: tuple[ActorKind, ...] = ("object", "trailer")
 
 
 def laid_behavior(behavior: BehaviorSpec, spec: RoadSpec, given: Mapping[str, Value]) -> BehaviorSpec:
@@ -83,8 +81,9 @@ def _without(behavior: BehaviorSpec, name: str) -> BehaviorSpec:
 def _with(behavior: BehaviorSpec, name: str, spec: RoadSpec, fields: Mapping[str, Value]) -> BehaviorSpec:
     """One more actor, behind those of its letter; it starts where the first one does unless more is said."""
     first = behavior.actors[0]
-    kind = fields.get("kind") or _KINDS.get(name[0], "object")
-    still = kind in _MOVES
+    kind = str(fields.get("kind") or kind_of_letter(name[0]))
+    record = ACTORS.get(kind)
+    still = record is not None and not (record.drives or record.walks)
     made = _checked(Actor, {
         "id": name, "kind": kind, "road": first.road, "direction": first.direction,
         "maneuver": "stopped" if still else "straight",

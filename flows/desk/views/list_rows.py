@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from sgcad_core.kinds import JUNCTIONS
+from sgcad_core.kinds import ACTORS, JUNCTIONS, kind_of_letter
 from sgcad_core.result import as_declared
 
 Trust = Literal["broken", "lacking", "doubtful", "refused", "whole"]
@@ -126,20 +126,32 @@ def confidence_of(facts: Iterable[Mapping[str, Any]]) -> float | None:
 def kind_of(result: Mapping[str, Any]) -> str:
     """What kind of crash is declared, in a word or two; "" where none is."""
     if near := result.get("near_crash"):
-        return f"near crash, {_pair(near['declared']['conflict'], {})}"
+        return f"near crash, {_pair(near['declared']['conflict'], {}, _types(result))}"
     declared = (result.get("collision") or {}).get("declared")
-    return _pair(declared, _maneuvers(result)) if declared else ""
+    return _pair(declared, _maneuvers(result), _types(result)) if declared else ""
+
+
+def _types(result: Mapping[str, Any]) -> dict[str, str]:
+    return {actor["id"]: str(actor.get("type", "")) for actor in result.get("actors") or ()}
 
 
 def _maneuvers(result: Mapping[str, Any]) -> dict[str, str]:
     return {actor["id"]: str(actor["maneuver"]) for actor in result.get("actors") or ()}
 
 
-def _pair(contact: Mapping[str, Any], maneuvers: Mapping[str, str]) -> str:
+def _walker(name: str, kind: str) -> str:
+    """What somebody without a vehicle is called: by the kind where that is not the usual one of the id's letter."""
+    record = ACTORS.get(kind)
+    if record is not None and record.letter == name[0] and kind != kind_of_letter(name[0]):
+        return record.called.partition(" ")[2]
+    return _WALKERS[name[0]]
+
+
+def _pair(contact: Mapping[str, Any], maneuvers: Mapping[str, str], kinds: Mapping[str, str]) -> str:
     pair = contact["striker"], contact["struck"]
     for name in pair:
         if name[:1] in _WALKERS:
-            return _WALKERS[name[:1]]
+            return _walker(name, kinds.get(name, ""))
     sides = {contact["striker_area"], contact["struck_area"]}
     if sides == {"front", "back"}:
         return "rear-end"

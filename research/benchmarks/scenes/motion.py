@@ -24,7 +24,8 @@ import numpy as np
 from flows.case.case_folder import read_trajectories
 from sgcad_core.case.records import Trajectory
 from sgcad_core.geometry.plane import Size
-from sgcad_core.metrics.drivability import WHEELED, deepest_overlap, driving_peaks, first_touches
+from sgcad_core.kinds import actor_kind
+from sgcad_core.metrics.drivability import deepest_overlap, driving_peaks, first_touches
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.reading import read
@@ -80,7 +81,7 @@ def count(case: Path, figures: Figures) -> None:
     reading = read((case / "report.txt").read_text(encoding="utf-8"))
     kinds = {a["id"]: a for a in result["actors"]}
     for motion in motions:
-        if kinds[motion.actor]["type"] in WHEELED:
+        if actor_kind(kinds[motion.actor]["type"]).wheeled:
             _vehicle(case.name, motion, kinds[motion.actor], (touches, reading.crash, reading.lost_control), figures)
     _overlaps(case.name, motions, sizes, figures)
 

@@ -11,7 +11,7 @@ from random import Random
 from research.generator.crash import roads
 from research.generator.crash.configurations import BUILDERS, opens
 from research.generator.crash.world import Actor, Crash, Leg, pick
-from sgcad_core.kinds import DRIVEWAY, FOUR, MERGE, PLAIN, T
+from sgcad_core.kinds import DRIVEWAY, FOUR, MERGE, PLAIN, T, actor_kind
 
 CONFIGS = {
     "crossing": 15.0,
@@ -121,7 +121,7 @@ def _sound(crash: Crash) -> bool:
         leg = crash.leg(actor.leg)
         if leg is None:
             return False
-        wheels = actor.kind not in ("pedestrian", "bicycle", "object")
+        wheels = actor_kind(actor.kind).motor
         if wheels and (not leg.lanes_in or (actor.out is not None and not opens(crash, actor.out))):
             return False
     return True
@@ -130,7 +130,7 @@ def _sound(crash: Crash) -> bool:
 def _finish(rng: Random, crash: Crash) -> None:
     """Numbers, lanes and speeds."""
     order = list(range(len(crash.actors)))
-    vehicles = [i for i in order if crash.actors[i].kind not in ("object", "pedestrian", "bicycle")]
+    vehicles = [i for i in order if actor_kind(crash.actors[i].kind).motor]
     if len(vehicles) > 1 and rng.random() < 0.5:
         vehicles[0], vehicles[1] = vehicles[1], vehicles[0]
     rest = [i for i in order if i not in vehicles]
@@ -138,7 +138,7 @@ def _finish(rng: Random, crash: Crash) -> None:
     for number, i in enumerate(vehicles, 1):
         crash.actors[i].id = f"V{number}"
     for i in rest:
-        crash.actors[i].id = {"object": "O1", "pedestrian": "P1", "bicycle": "B1"}[crash.actors[i].kind]
+        crash.actors[i].id = f"{actor_kind(crash.actors[i].kind).letter}1"
     place = {old: new for new, old in enumerate(order)}
     crash.actors = [crash.actors[i] for i in order]
     for contact in crash.contacts:
@@ -154,12 +154,12 @@ def _finish(rng: Random, crash: Crash) -> None:
 
 def _lane_and_speed(rng: Random, crash: Crash, actor: Actor) -> None:
     leg: Leg = crash.leg(actor.leg)  # type: ignore[assignment]
-    if actor.kind == "object" or actor.kind == "pedestrian":
+    if actor_kind(actor.kind).laneless:
         return
     actor.lane = lane_for(rng, leg, actor)
     if actor.maneuver in ("stopped", "parked"):
         actor.speed = 0
-    elif actor.kind != "bicycle":
+    elif actor_kind(actor.kind).motor:
         limit = leg.limit or 35
         slow = (
             actor.maneuver.startswith("turn")

@@ -10,6 +10,7 @@ from research.generator.crash.world import Contact, Crash
 from research.generator.grammar import StatedFacts, choose, clause_of
 from research.generator.phrase_labels import has, plain
 from research.generator.records import Group
+from sgcad_core.kinds import actor_kind
 
 ORDERS = ("striker", "struck", "place")
 """What a clause of a contact names first: the striker or its side, the struck as its subject, where that is hit."""
@@ -50,7 +51,7 @@ class ImpactsMixin:
         named = "{S}" in clause or "{T}" in clause
         if (named and not has(clause, "mutual")) or (areas and head_first):
             self.stated.add(f"contact.{number}")
-        walks = struck.kind in ("pedestrian", "bicycle")  # no clause tells its side
+        walks = actor_kind(struck.kind).exposed  # no clause tells its side
         self.stated |= {f"{'side' if walks else 'areas'}.{number}"} if areas else set()
         touching = {"sa": contact.striker_area, "ta": contact.struck_area} if areas else {}
         clause = clause if self.held_out else self._framed(clause, contact)

@@ -25,6 +25,7 @@ from sgcad_core.formats.openscenario.reading.variation import STOCHASTIC
 from sgcad_core.formats.openscenario.roads.shapes import SHAPES
 from sgcad_core.formats.openscenario.writing.events import Handover
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
+from sgcad_core.kinds import ACTORS
 from sgcad_core.records.specs import BehaviorSpec
 
 FAMILIES: dict[str, tuple[Family[Any], str]] = {
@@ -40,7 +41,8 @@ FAMILIES: dict[str, tuple[Family[Any], str]] = {
     "Stochastic distributions": (STOCHASTIC, "StochasticDistribution"),
 }
 """Families by heading, and the schema's type that holds one of them."""
-_KINDS = ("car", "truck", "bus", "motorcycle", "bicycle", "pedestrian", "object")
+_KINDS = tuple({r.category: r.id for r in reversed(ACTORS.values())}.values())[::-1]
+"""One of each category."""
 _XSD = "{http://www.w3.org/2001/XMLSchema}"
 _HEAD = """# What is written, read and refused of OpenSCENARIO
 

@@ -76,7 +76,7 @@ def _aside(known: Facts, actor: str) -> Parameter:
 def _size(script: Script, known: Facts, actor: str) -> list[Parameter]:
     """Length and width over the script's."""
     info, field = script.info(actor), field_at(actor, "kind")
-    if info.type == "object":
+    if info.record.thing:
         return []
     told = told_of(known, field)
     spread = 0.05 if told == "stated" else 0.1

@@ -20,10 +20,11 @@ from sgcad_core.execution.contact import first_contact, realised
 from sgcad_core.geometry.plane import Floats, Size
 from sgcad_core.handover.family.discrete_parameters import PAIR
 from sgcad_core.handover.family.shifted_evasion import Delay, delay_of
-from sgcad_core.handover.script import DRIVEN, Script, staging_for
+from sgcad_core.handover.script import Script, staging_for
+from sgcad_core.kinds import mass_kg
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath.hitch import hitched
-from sgcad_core.planner.aftermath.impact import body, mass_kg
+from sgcad_core.planner.aftermath.impact import body
 from sgcad_core.planner.aftermath.wreck import Wreck
 from sgcad_core.planner.aftermath.wreck_bodies import Mover
 from sgcad_core.planner.scene import AFTER_S, sample_speeds, usual_drag
@@ -69,7 +70,7 @@ def basis_of(script: Script) -> FamilyBasis | None:
         return None
     lines: dict[str, Way] = {}
     for name in (contact.actor, contact.other):
-        with_it = staging_for(script, name) if script.info(name).type in DRIVEN else None
+        with_it = staging_for(script, name) if script.info(name).record.driven else None
         if with_it is not None:
             lines |= dict(with_it.lines) | {name: with_it.way}
     if len(lines) < len(script.trajectories):
@@ -178,6 +179,6 @@ def _settled(made: Script, basis: FamilyBasis) -> tuple[Trajectory, ...]:
 def _mover(made: Script, track: Trajectory) -> Mover:
     info = made.info(track.actor)
     size: Size = (info.length_m, info.width_m)
-    mass = None if info.type == "object" else mass_kg(info.type, size)
+    mass = None if info.record.thing else mass_kg(info.type, info.length_m)
     grip = min(DRIVING.sliding_mps2(made.surface), made.friction_mps2)
     return Mover(track.actor, body((0.0, 0.0, 0.0), size, mass), track.pose, usual_drag(info.type, grip))

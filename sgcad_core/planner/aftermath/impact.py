@@ -11,26 +11,13 @@ import math
 from dataclasses import dataclass, field
 
 from sgcad_core.geometry.plane import Size
-from sgcad_core.records.specs import SIZE_M, ActorKind
 
-MASS_KG: dict[ActorKind, float] = {
-    "car": 1450.0, "suv": 1900.0, "pickup": 2100.0, "van": 2000.0, "truck": 9000.0, "bus": 13000.0,
-    "motorcycle": 280.0, "bicycle": 90.0, "pedestrian": 75.0, "trailer": 5000.0, "object": 1e9,
-}  # fmt: skip
-_TRAILER_KG_PER_M = {"truck": 900.0, "car": 150.0}
-"""Mass of the length beyond that of the kind: a towed trailer (a car's trailer represents all light ones)."""
 FRICTION = 0.5
 """Between two bodies; Brach finds 0.3 to 0.6 for vehicles that lock into each other."""
 RESTITUTION = 0.1
 """Of vehicles that crush; Brach: near 0 at speed, up to 0.3 at walking pace."""
 _LEAST_LENGTH_M = 1.7
 """Least length for the moment of inertia: a person is 0.5 m deep, but not so easily turned."""
-
-
-def mass_kg(kind: ActorKind, size: Size) -> float:
-    """The mass of an actor of that length and width (m) with what it tows."""
-    more = max(size[0] - SIZE_M[kind][0] - 2.0, 0.0)
-    return MASS_KG[kind] + more * _TRAILER_KG_PER_M["truck" if kind in ("truck", "bus") else "car"]
 
 
 @dataclass(slots=True)

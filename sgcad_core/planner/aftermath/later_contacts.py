@@ -13,7 +13,7 @@ from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit, leav
 from sgcad_core.planner.aftermath.struck_objects import Strike, strike_things
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold
-from sgcad_core.records.specs import Area, BehaviorSpec, Contact
+from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.surface import road_surface
 
@@ -27,7 +27,11 @@ class Ended(NamedTuple):
 
 _ASIDE = 0.3
 """Share of the length of a side: what a vehicle knocks over and pushes along is not between it and the next object."""
-_THINGS = ("object", "pedestrian", "bicycle")
+
+
+def _stands_by(actor: Actor) -> bool:
+    """Whether an actor can be struck on the way of a wreck: a thing, or a person without a body around."""
+    return actor.record.thing or actor.record.exposed
 
 
 def pair_of(contact: Contact) -> frozenset[str]:
@@ -50,7 +54,7 @@ def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Stri
     actors = {a.id: a for a in behavior.actors}
     found: list[Strike] = []
     met = {contacts[0].striker, contacts[0].struck} if contacts else set()
-    things = {c.struck for c in contacts[1:] if actors[c.struck].kind in _THINGS} - met
+    things = {c.struck for c in contacts[1:] if _stands_by(actors[c.struck])} - met
     for number, contact in enumerate(contacts[1:], 1):
         if contact.struck in things and contact.striker not in things:
             goes_on = any(c.striker == contact.striker for c in contacts[number + 1 :])

@@ -109,7 +109,7 @@ def _stand(scene: Scene, strike: Strike, pose: Floats) -> Track:
     size = size_m(strike.thing)
     motion = Motion(path, *stand(path, 0.0), size, np.zeros(2), -math.inf, standing=True, fixed=not strike.goes_on)
     track = scene.add(strike.thing.id, strike.thing.kind, motion, 0.0, brakes=False)
-    track.mass = _GIVES_WAY_KG if strike.goes_on and strike.thing.kind == "object" else None
+    track.mass = _GIVES_WAY_KG if strike.goes_on and strike.thing.record.thing else None
     return track
 
 

@@ -26,7 +26,6 @@ _ONE_TURNS = 24
 """Combinations tried in which only one of the two turns its side to the other."""
 _TURNING = 40
 """Combinations tried with other lines of a turn."""
-_LANELESS = ("pedestrian", "object")
 
 
 @dataclass
@@ -93,7 +92,7 @@ class Conflicts:
         return _facing_other(first, second), _facing_other(second, first)
 
     def _set_rolling(self, a: Actor, b: Actor) -> Actor:
-        mover = b if a.kind == "object" else a
+        mover = b if a.record.thing else a
         self.notes.append(f"{mover.id} is set rolling: two standing actors cannot touch")
         self.pushed.add(mover.id)
         self.actors[mover.id] = mover.model_copy(update={"maneuver": "straight", "speed_mph": mover.speed_mph or 10})
@@ -101,7 +100,7 @@ class Conflicts:
 
     def _places(self, a: Actor, b: Actor) -> tuple[Place, Place]:
         for one, other in ((a, b), (b, a)):
-            if one.kind in _LANELESS and other.kind not in _LANELESS:
+            if one.record.laneless and not other.record.laneless:
                 here = Place(self._station_for(one, other), 0.0, 0.0, 0.0)
                 return here, here
         pair = [(x, self.courses[x.id], size_m(x)[0]) for x in (a, b)]
@@ -110,12 +109,12 @@ class Conflicts:
     def _station_for(self, one: Actor, driver: Actor) -> float:
         """The station of a driver's course at which a pedestrian or an object is met."""
         course, length = self.courses[driver.id], size_m(driver)[0]
-        if one.kind == "pedestrian":
+        if one.record.walks:
             return crosswalk_station(driver, course, length, one)
         return preferred_station(driver, course, length)
 
     def _options(self, role: Role, other: Role, ways: Callable[[Role], list[Option]]) -> list[Option]:
-        if role.actor.kind != "pedestrian" or other.actor.kind in _LANELESS:
+        if not role.actor.record.walks or other.actor.record.laneless:
             return ways(role)
         found = []
         for cost, course, place in walking_courses(other.course, other.place.station_m, role.side):

@@ -197,7 +197,7 @@ def _from_beside(role: Role) -> list[Drift]:
 
 def pacings(role: Role) -> list[Pacing]:
     """Speeds: the usual one, catching up or falling behind, slower, faster, and from a stop."""
-    if role.actor.kind == "pedestrian":
+    if role.actor.record.walks:
         return [Pacing(0.0), Pacing(0.1, 1.6), Pacing(0.2, 0.7)]
     if role.course.stalls and role.actor.maneuver == "backing":
         return [Pacing(cost, factor, True) for cost, factor in ((0.0, 1.0), (0.1, 1.5), (0.15, 0.6))]

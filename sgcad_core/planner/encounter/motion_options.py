@@ -100,7 +100,7 @@ class Option:
 
     def motion_with(self, other: Option) -> Motion:
         """The motion in an encounter with another option: an object is placed in its path."""
-        return in_the_way(self, other) if self.role.actor.kind == "object" else self.motion
+        return in_the_way(self, other) if self.role.actor.record.thing else self.motion
 
 
 def options(role: Role) -> list[Option]:
@@ -112,11 +112,11 @@ def options(role: Role) -> list[Option]:
 
 
 def _parts(role: Role) -> Iterable[tuple[Drift, Pacing, Twist]]:
-    if role.actor.kind == "object":
+    if role.actor.record.thing:
         return product(beside_the_way(role), (Pacing(0.0),), any_angle(role))
     if is_standing(role):
         return product(stand_offs(role), (Pacing(0.0),), askew(role))
-    if role.actor.kind == "pedestrian":
+    if role.actor.record.walks:
         return product(steps_aside(), pacings(role), (Twist(0.0),))
     return product(drifts(role), pacings(role), skids(role))
 
@@ -148,14 +148,14 @@ def turned(role: Role) -> list[Option]:
 
 def forced(role: Role) -> list[Option]:
     """A few options through the meeting place with the wanted side ahead, however odd."""
-    if role.actor.kind in ("object", "pedestrian") or is_standing(role):
+    if role.actor.record.laneless or is_standing(role):
         return aimed(role)
     return _sorted(role, product(homing(role), pacings(role)[:2], aiming(role)[-1:] or [Twist(0.0)]))
 
 
 def spun(role: Role) -> list[Option]:
     """Its line with the box at any angle, where no driving explains the sides."""
-    if role.actor.kind in ("object", "pedestrian"):
+    if role.actor.record.laneless:
         return options(role)
     lines = stand_offs(role)[:1] if is_standing(role) else homing(role)[::2]
     return _sorted(role, product(lines, pacings(role)[:1], spins(role)))
@@ -163,7 +163,7 @@ def spun(role: Role) -> list[Option]:
 
 def slid(role: Role) -> list[Option]:
     """Its line with the box sliding at any angle, where no steering brings the sides together."""
-    if role.actor.kind in ("object", "pedestrian") or is_standing(role):
+    if role.actor.record.laneless or is_standing(role):
         return spun(role)
     return _sorted(role, product(homing(role)[::2], pacings(role)[:1], slides(role)))
 
@@ -207,7 +207,7 @@ def _lines(option: Option, pace: Pace) -> tuple[Path, Path, bool]:
 def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
     """The line of the rear axle, the path of the center, with the stations of the center, and whether it can be
     driven."""
-    if role.actor.kind == "pedestrian":
+    if role.actor.record.walks:
         return line, line, True
     length, backing = role.size[0], role.actor.maneuver == "backing"
     line = widened_bends(line, tightest(length) if role.actor.maneuver == "u_turn" else easiest(length))
@@ -247,7 +247,7 @@ def standing(option: Option) -> Motion:
     path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
     time, station = stand(path, role.place.station_m)
     penalty = cost_outside(path.s_m, *waiting_zone(role), OUT_OF_GORE if role.actor.gore else 0.03)
-    return Motion(path, time, station, role.size, penalty, -math.inf, standing=True, fixed=role.actor.kind == "object")
+    return Motion(path, time, station, role.size, penalty, -math.inf, standing=True, fixed=role.actor.record.thing)
 
 
 def in_the_way(option: Option, other: Option) -> Motion:
@@ -283,7 +283,7 @@ def _begins(role: Role, drift: Drift) -> float:
     turn = role.course.turn
     shown = [turn.entry_m - 2.0] if turn is not None else []
     shown += [drift.end_m - drift.length_m] if drift.left_m and drift.end_m > 0 else []
-    return min(shown, default=role.place.station_m - (3.0 if role.actor.kind == "pedestrian" else 10.0))
+    return min(shown, default=role.place.station_m - (3.0 if role.actor.record.walks else 10.0))
 
 
 def _pace(role: Role, option: Option) -> Pace:

@@ -67,7 +67,7 @@ class _Side(NamedTuple):
 
     @property
     def may_evade(self) -> bool:
-        return not self.motion.standing and self.option.role.actor.kind != "object"
+        return not self.motion.standing and not self.option.role.actor.record.thing
 
     def velocity(self, after_s: float = 0.0) -> tuple[float, float]:
         """Velocity at a time after the contact, m/s."""

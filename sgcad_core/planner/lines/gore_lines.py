@@ -33,7 +33,7 @@ def through_gore(graph: LaneGraph, actor: Actor, course: Course, find: Callable[
     gore = next((g for g in gores(graph) if names & {road_of(g.road)[0], road_of(g.ramp)[0]}), None)
     if gore is None:
         return replace(course, notes=(*course.notes, f"{actor.id}: {NO_GORE}"))
-    if actor.maneuver in STANDING or actor.kind in ("object", "pedestrian"):
+    if actor.maneuver in STANDING or actor.record.laneless:
         return _standing(gore, course)
     road, ramp = road_of(gore.road)[0], road_of(gore.ramp)[0]
     if gore.leaves:
@@ -49,7 +49,7 @@ def through_gore(graph: LaneGraph, actor: Actor, course: Course, find: Callable[
 
 def into_gores(behavior: BehaviorSpec) -> BehaviorSpec:
     """The behavior with the striker of an object in a gore driving into the gore."""
-    things = {a.id for a in behavior.actors if a.gore and a.kind == "object"}
+    things = {a.id for a in behavior.actors if a.gore and a.record.thing}
     by = {c.striker for c in behavior.contacts[:1] if c.struck in things}
     if not by:
         return behavior

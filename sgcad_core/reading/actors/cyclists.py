@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sgcad_core.reading.actors.makes import is_ridden, no_vehicle
 from sgcad_core.reading.actors.references import Numbering, numbered
 from sgcad_core.reading.actors.unnumbered_actors import Actor, Cast, Phrase
 from sgcad_core.reading.language import rule
@@ -23,7 +24,11 @@ class _Cyclists(Numbering):
     """Numbers cyclists alone, and marks them as numbered here; no phrase of a vehicle means V1 or anybody else."""
 
     def is_nobody(self, phrase: Phrase) -> bool:
-        return phrase.kind != "bicycle" or not phrase.match["user"] or super().is_nobody(phrase)
+        return (
+            not (is_ridden(phrase.kind) and no_vehicle(phrase.kind))
+            or not phrase.match["user"]
+            or super().is_nobody(phrase)
+        )
 
     def introduced(self, words: str, number: str) -> str:
         return f"{'An' if words[0].isupper() else 'an'} unnumbered {words.partition(' ')[2]} {number}"

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from sgcad_core.kinds import actor_kind, kind_of_letter
 from sgcad_core.reading.contacts.contact_telling import Blow
 from sgcad_core.reading.language import of_role
 from sgcad_core.records.specs import ActorKind
@@ -38,11 +39,11 @@ def others(blows: Iterable[Blow], vehicles: tuple[str, ...], parked: int = 0) ->
 
 def is_person(word: str) -> bool:
     """Whether somebody without a number is a road user, not a thing."""
-    return _kind(word)[1] != "object"
+    return not actor_kind(_kind(word)[1]).thing
 
 
 def _kind(word: str) -> tuple[str, ActorKind]:
     for road_user in of_role("road_user"):
         if road_user.search(word):
             return road_user.yields["letter"], road_user.yields["kind"]
-    return "O", "object"
+    return "O", kind_of_letter("O")

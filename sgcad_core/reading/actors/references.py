@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from sgcad_core.reading.actors.makes import BODY_WORDS
+from sgcad_core.reading.actors.makes import BODY_WORDS, is_ridden, on_foot
 from sgcad_core.reading.actors.unnumbered_actors import TRUCK_PARTS, Actor, Cast, Phrase
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.text.traced_text import Traced, joined
@@ -123,7 +123,7 @@ class Numbering:
             return bool(match.start()) or not phrase.order
         if match["det"] and match["det"].lower() in _OWNERS and self.cast.actors:
             return True
-        ridden = phrase.kind in ("bicycle", "motorcycle") and rule("references.ridden").search(before)
+        ridden = is_ridden(phrase.kind) and rule("references.ridden").search(before)
         return bool(rule("references.stranger").search(before)) or bool(ridden and self._has(phrase.kind))
 
     def _described(self, match: re.Match[str]) -> Actor | None:
@@ -142,7 +142,7 @@ class Numbering:
     def _is_subject(self, phrase: Phrase) -> bool:
         if self.cast.subject():
             return False
-        return bool(phrase.match["automated"]) if self.cast.automated else phrase.kind not in ("pedestrian", "animal")
+        return bool(phrase.match["automated"]) if self.cast.automated else not on_foot(phrase.kind)
 
     def _known(self, phrase: Phrase) -> Actor | None:
         match = phrase.match

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from sgcad_core.reading.actors.makes import BODY_WORDS, kind_of
+from sgcad_core.reading.actors.makes import BODY_WORDS, is_large, kind_of, no_vehicle
 from sgcad_core.reading.language import rule, values
 
 _STATES: dict[str, str] = values("state")
@@ -18,7 +18,6 @@ _MOST = 8
 """Actors of a report that numbers nobody; further ones stay as they are written."""
 _ANY = ("vehicle", "motorist")
 """Heads that may mean any vehicle."""
-_NO_VEHICLE = ("pedestrian", "bicycle", "animal")
 TRUCK_PARTS, _TRUCKS = ("cab", "flatbed", "tractor"), ("truck", "pickup")
 """Words for a part of a truck that also name vehicles of their own."""
 _CARS = ("car", "sedan", "coupe", "hatchback", "passenger car", "passenger vehicle")
@@ -154,12 +153,12 @@ class Cast:
 
     def _by_name(self, phrase: Phrase) -> list[Actor]:
         """Vehicles that were called by a name of the phrase."""
-        return [a for a in self.actors if a.names & phrase.names and a.kind not in _NO_VEHICLE]
+        return [a for a in self.actors if a.names & phrase.names and not no_vehicle(a.kind)]
 
     def _own(self, phrase: Phrase) -> bool:
         """Whether "the truck" is the automated vehicle: a large one, where no other vehicle was named."""
-        large = phrase.kind in ("truck", "bus") and not phrase.match["make"] and not _beside(phrase)
-        return self.automated and large and all(a.subject or a.kind in _NO_VEHICLE for a in self.actors)
+        large = is_large(phrase.kind) and not phrase.match["make"] and not _beside(phrase)
+        return self.automated and large and all(a.subject or no_vehicle(a.kind) for a in self.actors)
 
     def open(self, phrase: Phrase) -> Actor | None:
         """Whom the opening of the report announced and nobody has told of since, if the words fit."""
@@ -170,9 +169,9 @@ def _fits(actor: Actor, phrase: Phrase) -> bool:
     """Whether the words of a phrase may mean an actor."""
     if phrase.head in actor.heads or phrase.kind == actor.kind:
         return True
-    vehicle = actor.kind not in _NO_VEHICLE
+    vehicle = not no_vehicle(actor.kind)
     if phrase.kind == "vehicle" or actor.kind == "vehicle":
-        return vehicle and phrase.kind not in _NO_VEHICLE
+        return vehicle and not no_vehicle(phrase.kind)
     return phrase.head == "truck" and actor.kind in ("truck", "pickup")
 
 

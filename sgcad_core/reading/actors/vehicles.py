@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from sgcad_core.kinds import actor_kind
 from sgcad_core.reading.actors import vehicle_descriptions as phrases
 from sgcad_core.reading.actors.makes import BODY_WORDS, COLORS, MAKES, is_animal, kind_of
 from sgcad_core.reading.language import rule
@@ -87,7 +88,8 @@ class Roster:
         counts: dict[str, int] = {}
         found: dict[str, str] = {}
         for v in self.vehicles:
-            letter = _LETTERS.get(v.kind, "V") if v.counted else "V"
+            record = actor_kind(v.kind)
+            letter = record.letter if v.counted and record.exposed else "V"
             letter = "O" if v.beside else "A" if v.animal else letter
             counts[letter] = counts.get(letter, 0) + 1
             found[v.id] = f"{letter}{counts[letter]}" if v.counted or v.beside else v.id
@@ -155,10 +157,7 @@ def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
 
 def _marked(identity: Identity) -> Identity:
     """Numbered here though the report numbers others: somebody on a bicycle, else a parked vehicle."""
-    return replace(identity, counted=True) if identity.kind == "bicycle" else replace(identity, beside=True)
-
-
-_LETTERS: dict[ActorKind, str] = {"pedestrian": "P", "bicycle": "B"}
+    return replace(identity, counted=True) if actor_kind(identity.kind).keeps_right else replace(identity, beside=True)
 
 
 _NO_NUMBER = rule("vehicles.no_number")

@@ -7,7 +7,7 @@ does not fit costs, and the cheapest choice stands. Works on any road spec. Know
 from __future__ import annotations
 
 from sgcad_core.errors import Refused
-from sgcad_core.kinds import RAMP
+from sgcad_core.kinds import RAMP, actor_kind
 from sgcad_core.reading.behavior.exit_assignment import Placed, assign, square_rad
 from sgcad_core.reading.behavior.gore_actors import in_gore
 from sgcad_core.reading.behavior.lane_choice import lane_of
@@ -16,9 +16,7 @@ from sgcad_core.reading.contacts.near_crash import NearFacts
 from sgcad_core.reading.crash_facts import FROM_STOP_MPH, ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.reading.layout.road_ways import Way
 from sgcad_core.records.specs import (  # fmt: skip
-    SIZE_M,
     Actor,
-    ActorKind,
     BehaviorSpec,
     Contact,
     Evasion,
@@ -28,7 +26,6 @@ from sgcad_core.records.specs import (  # fmt: skip
     is_aisle,
 )
 
-_TRAILER_M: dict[ActorKind, float] = {"truck": 11.0, "pickup": 5.5, "suv": 5.0, "van": 5.0, "car": 4.0}
 """Length of what such a vehicle tows, hitch included, metres."""
 _LONGEST_M = 30.0
 _SHIFTS: tuple[Maneuver, ...] = ("lane_change_left", "lane_change_right")
@@ -106,9 +103,10 @@ def _speed_mph(v: VehicleFacts) -> int | None:
 
 def _length(v: VehicleFacts) -> float | None:
     """A vehicle with a trailer is one long box: the trailer is part of the numbered vehicle."""
-    if not v.trailer or v.kind not in _TRAILER_M:
+    record = actor_kind(v.kind)
+    if not v.trailer or record.trailer_m is None:
         return None
-    return min(SIZE_M[v.kind][0] + _TRAILER_M[v.kind], _LONGEST_M)
+    return min(record.length_m + record.trailer_m, _LONGEST_M)
 
 
 def _contact(c: ContactFacts) -> Contact:
@@ -125,6 +123,6 @@ def _with_others(actors: list[Actor], facts: CrashFacts) -> tuple[list[Actor], l
     driver = next(a for a in actors if a.id == hits[0].striker)
     joined = Actor(
         id=other.id, kind=other.kind, road=driver.road, direction=driver.direction,
-        maneuver="straight" if other.kind in ("pedestrian", "bicycle") else "stopped",
+        maneuver="straight" if actor_kind(other.kind).exposed else "stopped",
     )  # fmt: skip
     return [*actors, joined], hits[:1]

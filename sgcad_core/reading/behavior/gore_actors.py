@@ -26,7 +26,7 @@ def in_gore(
         how = gore.get(actor.id)
         if how in ("crosses", "leaves"):
             actor = actor.model_copy(update=_across(ramp, ways, how))
-        thing = actor.id in things and actor.kind == "object"
+        thing = actor.id in things and actor.record.thing
         if how in ("crosses", "leaves", "stands") or thing:
             actor = actor.model_copy(update={"gore": True})
         found.append(actor)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from sgcad_core.kinds import actor_kind, kind_of_letter
 from sgcad_core.reading.actors.pedestrians_objects import OtherFacts
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.records.course import ImpactTold
@@ -36,7 +37,7 @@ def with_roadside(
         joined.append(_standing(other, driver))
         struck.append(Contact(
             striker=vehicle, struck=other.id, striker_area=impact.actor_area or "front",
-            struck_area="front" if other.kind == "object" else "left",
+            struck_area="front" if actor_kind(other.kind).thing else "left",
         ))  # fmt: skip
     return tuple(joined), tuple(struck)
 
@@ -75,11 +76,11 @@ def _known(facts: CrashFacts, word: str, taken: set[str]) -> OtherFacts:
             return other
     used = taken | {o.id for o in facts.others}
     free = next(f"O{n}" for n in range(1, 99) if f"O{n}" not in used)
-    return OtherFacts(free, "object", word)
+    return OtherFacts(free, kind_of_letter("O"), word)
 
 
 def _standing(other: OtherFacts, driver: Actor) -> Actor:
-    size = _SIZE_M.get(other.word.split()[-1], _USUAL_M) if other.kind == "object" else (None, None)
+    size = _SIZE_M.get(other.word.split()[-1], _USUAL_M) if actor_kind(other.kind).thing else (None, None)
     kind: ActorKind = other.kind
     return Actor(
         id=other.id, kind=kind, road=driver.road, direction=driver.direction, maneuver="stopped",

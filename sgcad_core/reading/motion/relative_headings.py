@@ -5,7 +5,7 @@ Evidence is added up: relation words, critical events, maneuvers, and which side
 
 from __future__ import annotations
 
-from sgcad_core.kinds import RAMP
+from sgcad_core.kinds import RAMP, actor_kind
 from sgcad_core.reading.contacts.contact_telling import Blow
 from sgcad_core.reading.inference.inference_state import HIT_FROM, Draft, Settled, apart, bend_deg, end_of, is_sideswipe
 from sgcad_core.reading.motion.motion_record import DRIVES
@@ -29,7 +29,7 @@ def relative(draft: Draft, out: Settled, a: str, b: str, pairs: list[Blow]) -> i
 
 
 def _on_foot(draft: Draft, a: str, b: str) -> bool:
-    return any(v.kind == "pedestrian" for v in draft.who.vehicles if v.id in (a, b))
+    return any(actor_kind(v.kind).walks for v in draft.who.vehicles if v.id in (a, b))
 
 
 def contact_prefers(out: Settled, a: str, b: str, pairs: list[Blow], turn: int) -> bool:
@@ -80,12 +80,12 @@ def _add_maneuvers(score: dict[int, float], draft: Draft, out: Settled, a: str, 
 
 def _add_kinds(score: dict[int, float], draft: Draft, out: Settled, a: str, b: str) -> None:
     """How riders and people on foot come where nothing tells it."""
-    kinds = {v.id: v.kind for v in draft.who.vehicles}
+    kinds = {v.id: actor_kind(v.kind) for v in draft.who.vehicles}
     for me, you in ((a, b), (b, a)):
-        if out.maneuvers[me] == "turn_right" and kinds[you] == "bicycle" and kinds[me] != "bicycle":
+        if out.maneuvers[me] == "turn_right" and kinds[you].keeps_right and not kinds[me].keeps_right:
             score[0] += 1.0  # a right turn cuts off who rides beside it, seldom who comes the other way
     for me, sign in ((a, 1), (b, -1)):
-        if kinds[me] == "pedestrian":  # who is told nothing else steps off the curb on the right
+        if kinds[me].walks:  # who is told nothing else steps off the curb on the right
             score[90 if sign == 1 else 270] += 0.4
 
 

@@ -10,7 +10,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, GORE, JOINING, MEDIAN_OPENING, RAMP, ROUNDABOUT, WORK_ZONE, T
+from sgcad_core.kinds import (
+    ALLEY,
+    DRIVEWAY,
+    FOUR_LEG,
+    GORE,
+    JOINING,
+    MEDIAN_OPENING,
+    RAMP,
+    ROUNDABOUT,
+    WORK_ZONE,
+    T,
+    actor_kind,
+)
 from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.inference.inference_state import QUARTER_DEG
@@ -108,7 +120,7 @@ def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> Roa
     """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
     mentions, crash = _alleys(road_mentions(_telling(told), who.ids), crash)
     crash = oriented(crash, mentions, told)
-    driven = tuple(v for v in crash.vehicles if v.kind != "pedestrian") or crash.vehicles
+    driven = tuple(v for v in crash.vehicles if not actor_kind(v.kind).walks) or crash.vehicles
     headings = {v.id: v.heading for v in driven if v.heading}
     limits, bends = speed_limits(told, headings), curves(told, headings)
     gathered = gather(mentions, headings) or [GatheredRoad(None) for _ in limits[:1]]
@@ -178,7 +190,7 @@ def _staying(v: VehicleFacts) -> VehicleFacts:
 
 
 def _somebody_walks(crash: CrashFacts) -> bool:
-    return any(other.kind == "pedestrian" for other in crash.others)
+    return any(actor_kind(other.kind).walks for other in crash.others)
 
 
 def _rural(told: tuple[Statement, ...]) -> Cue | None:

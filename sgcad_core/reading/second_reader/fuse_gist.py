@@ -17,7 +17,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, cast
 
-from sgcad_core.kinds import FOUR_LEG, Maneuver
+from sgcad_core.kinds import ACTORS, FOUR_LEG, Maneuver
 from sgcad_core.reading.contacts.near_crash import NearFacts
 from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.reading.second_reader.seven_question_gist import (
@@ -32,7 +32,7 @@ from sgcad_core.reading.second_reader.seven_question_gist import (
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.facts import Value as FactValue
 from sgcad_core.records.second_reader import MOST_NATS, Opinion, Value, Weights
-from sgcad_core.records.specs import ActorKind, Area
+from sgcad_core.records.specs import Area
 
 if TYPE_CHECKING:
     from sgcad_core.reading.reading import Reading
@@ -42,7 +42,6 @@ FILLS = 0.6
 """From which probability on a value stands where the rules have none; of answers to the whole report also where they
 have one, since the rules name the sentence of each value."""
 _EDGE = 1e-6
-_VEHICLES = ("car", "suv", "pickup", "van", "truck", "bus", "motorcycle")
 _PARTNER = "V2"
 TURNS = ("turn_left", "turn_right", "u_turn")
 
@@ -184,11 +183,10 @@ def with_contact(crash: CrashFacts, decided: Mapping[str, Decided]) -> CrashFact
     if not (crash.gap and crash.gap.unread) or not all(key in decided and decided[key].p >= FILLS for key in _NEEDED):
         return crash
     value = {key: decided[key].value for key in _NEEDED}
-    if value["met"] not in _VEHICLES or not crash.vehicles or crash.vehicles[0].id != SUBJECT:
+    met = ACTORS.get(str(value["met"]))
+    if met is None or not met.motor or not crash.vehicles or crash.vehicles[0].id != SUBJECT:
         return crash
-    them = next(
-        (v for v in crash.vehicles if v.id == _PARTNER), VehicleFacts(_PARTNER, cast("ActorKind", value["met"]))
-    )
+    them = next((v for v in crash.vehicles if v.id == _PARTNER), VehicleFacts(_PARTNER, met.id))
     me, them = (
         replace(v, maneuver=cast("Maneuver", value[key]), maneuver_stated=True)
         for v, key in ((crash.vehicles[0], "subject"), (them, "other"))

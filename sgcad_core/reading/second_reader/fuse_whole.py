@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
-from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, T
+from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, T, actor_kind
 from sgcad_core.reading.actors.pedestrians_objects import OtherFacts
 from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.reading.layout.answered_layout import carries, junction_of, legs_added, short_of_told
@@ -45,7 +45,7 @@ def whole(reading: Reading, opinion: Opinion) -> Reading:
     """The reading with what the model's answers to the whole report know better; as it is where they are of no use."""
     if opinion.answered is None or reading.crash.unnumbered or reading.crash.near_crash:
         return reading
-    heard = model_claims(opinion.answered)
+    heard = _sayable(model_claims(opinion.answered), reading.crash)
     gap = reading.crash.gap
     if gap is not None:
         reading = _filled(reading, opinion.answered, heard) if gap.unread else reading
@@ -62,6 +62,13 @@ def whole(reading: Reading, opinion: Opinion) -> Reading:
     used |= laid | seated.keys()
     facts = [fact for key in taken if key in used for fact in facts_of(key, taken[key], crash)]
     return _told(reading, crash, roads, facts)
+
+
+def _sayable(heard: Claims, crash: CrashFacts) -> Claims:
+    """The claims without kinds of those that the rules read as a kind of which the embedded model knows no word."""
+    kinds = {v.id: v.kind for v in crash.vehicles} | {other.id: other.kind for other in crash.others}
+    beyond = {f"kind.{name}" for name, kind in kinds.items() if not actor_kind(kind).learned}
+    return {key: claim for key, claim in heard.items() if key not in beyond}
 
 
 def _seated(

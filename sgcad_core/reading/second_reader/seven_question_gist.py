@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from pydantic import Field
 
-from sgcad_core.kinds import Maneuver
+from sgcad_core.kinds import ACTORS, Maneuver, kind_of_letter
 from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts
 from sgcad_core.records.answer_schema import Spec
 from sgcad_core.records.second_reader import Value
@@ -41,7 +41,6 @@ _ALIKE: tuple[frozenset[Value], ...] = (
     frozenset({"stopped", "parked"}),
     frozenset({"straight", "slowing", "negotiating_curve"}),
     frozenset({"lane_change_left", "lane_change_right", "merge"}),
-    frozenset({"car", "suv", "pickup", "van", "truck", "bus", "motorcycle", "trailer"}),
 )
 """Values that make no difference to whether both readers agree."""
 _SHOWN: tuple[frozenset[Value], ...] = (
@@ -55,7 +54,14 @@ _SHOWN: tuple[frozenset[Value], ...] = (
 
 def alike(one: Value, other: Value) -> bool:
     """Whether two values of a field mean the same motion or the same sort of partner."""
-    return one == other or any({one, other} <= some for some in _ALIKE)
+    same = one == other or any({one, other} <= some for some in _ALIKE)
+    return same or (_is_in_traffic(one) and _is_in_traffic(other))
+
+
+def _is_in_traffic(value: Value) -> bool:
+    """Whether a value is a motor vehicle or its trailer, which makes no difference either."""
+    record = ACTORS.get(str(value))
+    return record is not None and (record.motor or record.pulled)
 
 
 def shown_alike(one: Value, other: Value) -> bool:
@@ -108,7 +114,7 @@ def _of_contact(crash: CrashFacts, contact: ContactFacts) -> tuple[dict[str, Val
     mine, theirs = areas(contact)
     kinds = {other.id: other.kind for other in crash.others}
     them = crash.vehicle(name)
-    kind: ActorKind = them.kind if them else kinds.get(name, "object")
+    kind: ActorKind = them.kind if them else kinds.get(name, kind_of_letter("O"))
     values: dict[str, Value] = {"touched": near is None, "subject_area": mine, "other_area": theirs, "met": kind}
     told = {"met"} | ({"subject_area", "other_area"} if contact.areas_stated else set())
     told |= {"touched"} if contact.stated and (near is None or near.stated) else set()

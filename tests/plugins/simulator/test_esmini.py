@@ -11,7 +11,7 @@ from sgcad_core.case.records import RoadNetwork, Scenario
 from sgcad_core.errors import MissingTool, SimulationFailed
 from sgcad_core.execution.compare_executions import TOLERANCE_M, judge
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.records.specs import SIZE_M
+from sgcad_core.kinds import ACTORS
 from tests.plugins.simulator.fake_esmini import COLUMNS, log, make
 from tests.plugins.simulator.test_simulators import scenario_of
 from tests.sgcad_core.formats.xosc_samples import CROSSING, actor, crossroads, trajectory
@@ -119,7 +119,7 @@ def test_esmini_replays_a_planned_crash_and_sees_the_declared_contact(esmini, ve
     assert (verdict.loaded, verdict.same_motion, verdict.as_declared) == (True, True, True)
 
 
-@pytest.mark.parametrize("kind", SIZE_M)
+@pytest.mark.parametrize("kind", ACTORS)
 def test_esmini_places_the_box_of_every_kind_where_we_do(esmini, kind):
     """Fast and slow, around, to rest, off again and backwards."""
     t = np.arange(200) * 0.05

@@ -51,6 +51,17 @@ def of(items, field):
     return {item.field: item for item in items}.get(field)
 
 
+# ------------------------------------------------------------------ kinds
+@pytest.mark.parametrize(("said", "lacks"), [("hovercraft", True), ("golf cart", False), ("vehicle", False)])
+def test_a_vehicle_of_no_known_kind_lacks_its_kind(made, said, lacks):
+    text = f"V1, a {said}, was traveling north."
+    sentences = split_sentences(Traced.of(text))
+    drawn = fact("vehicles.V1.kind", "car", basis="default" if said != "golf cart" else "text", start=None, end=None)
+    reading = replace(telling(made, drawn).reading, sentences=sentences)
+    found = of(unread_items(replace(made, reading=reading)), "text.kind")
+    assert (found is not None and found.value == said) is lacks
+
+
 # ------------------------------------------------------------------ the whole
 def test_a_bundled_report_is_whole_and_its_counts_agree(made):
     told = account_of(made, made.reading.facts).summary()

@@ -12,7 +12,7 @@ from sgcad_core.execution.contact import first_contact, realised
 from sgcad_core.handover.family.cross_entropy import rank_correlations, search
 from sgcad_core.handover.family.parameter_priors import open_parameters
 from sgcad_core.handover.family.variant import basis_of, member, undisturbed
-from sgcad_core.planner.aftermath.impact import mass_kg
+from sgcad_core.kinds import mass_kg
 from tests.sgcad_core.handover.scenes import crossing, rear_end
 
 STATED = [
@@ -83,7 +83,7 @@ def test_a_member_is_the_declared_crash_and_its_energy_never_grows(seed, own, ot
 def kinetic(script, track, k):
     info = script.info(track.actor)
     moved = math.hypot(track.x_m[k + 1] - track.x_m[k], track.y_m[k + 1] - track.y_m[k]) / 0.05
-    return mass_kg(info.type, (info.length_m, info.width_m)) * moved**2 / 2
+    return mass_kg(info.type, info.length_m) * moved**2 / 2
 
 
 def test_pace_keeps_the_place_and_the_time_of_the_contact():

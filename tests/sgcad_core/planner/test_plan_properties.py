@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.geometry.plane import Box, box_gaps, contact_area
-from sgcad_core.metrics.drivability import WHEELED, deepest_overlap, driving_peaks, first_touches
+from sgcad_core.kinds import learned_actors
+from sgcad_core.metrics.drivability import deepest_overlap, driving_peaks, first_touches
 from sgcad_core.planner import Plan, plan
 from sgcad_core.planner.encounter.maneuver_choices import SLIDES
 from sgcad_core.planner.motion import LEAD_S
@@ -24,7 +25,7 @@ STEP_S = 0.05
 EXAMPLES = many(20, 200)
 LONGEST_S = LEAD_S[1] + AFTER_S + 3.0
 """A lead, the usual time behind the contact, and more for who runs on far."""
-KINDS, MANEUVERS, AREAS = ActorKind.__args__, Maneuver.__args__, Area.__args__
+KINDS, MANEUVERS, AREAS = learned_actors(), Maneuver.__args__, Area.__args__
 
 
 @st.composite
@@ -103,7 +104,7 @@ def check_driven(behavior: BehaviorSpec, made: Plan) -> None:
     touches = first_touches(made.trajectories, sizes)
     for actor, track in zip(behavior.actors, made.trajectories, strict=True):
         slides = any(note.startswith(actor.id) and SLIDES in note for note in made.notes)
-        if actor.kind in WHEELED and not slides:
+        if actor.record.wheeled and not slides:
             seen = driving_peaks(track, sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing")
             assert not seen.excesses(behavior.surface), (actor, made.notes)
     assert deepest_overlap(made.trajectories, sizes)[0] < 0.06

@@ -6,52 +6,16 @@ BoundingBox.Center and FrontAxle from there), a pedestrian's and an object's the
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from scenariogeneration import xosc
 
 from sgcad_core.case.records import ActorInfo
-from sgcad_core.records.specs import ActorKind, BehaviorSpec, Light, Surface, Weather
+from sgcad_core.kinds import ActorRecord
+from sgcad_core.kinds.actors import Axles
+from sgcad_core.records.specs import BehaviorSpec, Light, Surface, Weather
 
-HEIGHT_M: dict[ActorKind, float] = {
-    "car": 1.5, "suv": 1.8, "pickup": 1.8, "van": 2.0, "truck": 3.5, "bus": 3.2, "motorcycle": 1.4,
-    "bicycle": 1.7, "pedestrian": 1.75, "trailer": 3.5, "object": 1.0,
-}  # fmt: skip
-MASS_KG: dict[ActorKind, float] = {
-    "car": 1500, "suv": 1900, "pickup": 2100, "van": 2000, "truck": 9000, "bus": 12000, "motorcycle": 250,
-    "bicycle": 90, "pedestrian": 75, "trailer": 6000, "object": 100,
-}  # fmt: skip
-_CATEGORY = {
-    "car": "car", "suv": "car", "pickup": "car", "van": "van", "truck": "truck", "bus": "bus",
-    "motorcycle": "motorbike", "bicycle": "bicycle", "trailer": "trailer",
-}  # fmt: skip
-
-
-class Overhang(NamedTuple):
-    """From a bumper to the nearest axle: share of the length, and the most metres that it grows to."""
-
-    share: float
-    most_m: float
-
-    def of(self, length_m: float) -> float:
-        """Metres on a body of this length."""
-        return min(self.share * length_m, self.most_m)
-
-
-OVERHANGS: dict[ActorKind, tuple[Overhang, Overhang]] = {
-    "car": (Overhang(0.20, 1.0), Overhang(0.21, 1.2)), "suv": (Overhang(0.19, 1.0), Overhang(0.21, 1.2)),
-    "pickup": (Overhang(0.17, 1.0), Overhang(0.21, 1.4)), "van": (Overhang(0.18, 1.0), Overhang(0.21, 1.4)),
-    "truck": (Overhang(0.15, 1.4), Overhang(0.22, 2.5)), "bus": (Overhang(0.22, 2.7), Overhang(0.27, 3.4)),
-    "motorcycle": (Overhang(0.15, 0.4), Overhang(0.17, 0.45)), "bicycle": (Overhang(0.19, 0.4), Overhang(0.19, 0.4)),
-    "trailer": (Overhang(0.08, 1.0), Overhang(0.22, 2.8)),
-}  # fmt: skip
-"""In front and behind, per kind with axles, as on common models: a car of 4.7 m stands on 2.8 m of wheelbase, its
-center 1.36 m before the rear axle. A trailer's front "axle" is its kingpin. A long truck is a combination on one
-box: its last axle is the trailer's, whose overhang does not grow with the length."""
 INTERPOLATION = ("plineInterpolation", "segment")
 """A property that esmini reads: headings along the whole segment. Its own default for followingMode "position"
 turns about the vertices, which puts the heading at every vertex half a step behind."""
-_WHEEL_M: dict[ActorKind, float] = {"truck": 1.0, "bus": 1.0, "trailer": 1.0}
 _TIME: dict[Light, tuple[int, int]] = {
     "day": (12, 0), "dusk": (20, 45), "dawn": (5, 15), "dark": (23, 0), "dark_lit": (23, 0),
 }  # fmt: skip
@@ -75,32 +39,37 @@ _WETNESS: dict[Surface, str] = {"dry": "dry", "wet": "wetWithPuddles"}
 
 def center_ahead_m(actor: ActorInfo) -> float:
     """How far the box center lies ahead of the entity's origin, metres; 0 without axles."""
-    if actor.type not in OVERHANGS:
-        return 0.0
-    return actor.length_m / 2 - OVERHANGS[actor.type][1].of(actor.length_m)
+    axles = actor.record.axles
+    return actor.length_m / 2 - axles.rear.of(actor.length_m) if axles else 0.0
 
 
 def entity(actor: ActorInfo, minor: int) -> xosc.Vehicle | xosc.Pedestrian | xosc.MiscObject:
     """One actor with its true box and axles, metres from its origin, for version 1.`minor`."""
-    height, mass = HEIGHT_M[actor.type], MASS_KG[actor.type]
+    record = actor.record
     ahead = round(center_ahead_m(actor), 6)
-    box = xosc.BoundingBox(actor.width_m, actor.length_m, height, ahead, 0.0, height / 2)
-    if actor.type == "pedestrian":
-        model = actor.type if minor == 0 else None  # the schema of 1.0 wants one
-        made = xosc.Pedestrian(actor.type, mass, xosc.PedestrianCategory.pedestrian, box, model)
-    elif actor.type == "object":
-        made = xosc.MiscObject(actor.type, mass, xosc.MiscObjectCategory.obstacle, box)
+    box = xosc.BoundingBox(actor.width_m, actor.length_m, record.height_m, ahead, 0.0, record.height_m / 2)
+    if record.axles is None:
+        made = _without_axles(record, box, minor)
     else:
-        category = getattr(xosc.VehicleCategory, _CATEGORY[actor.type])
-        made = xosc.Vehicle(actor.type, category, box, *_axles(actor), 70.0, 12.0, 12.0, mass if minor else None)
+        bounds = record.max_speed_mps, record.max_acceleration_mps2, record.max_deceleration_mps2
+        category = getattr(xosc.VehicleCategory, record.category)
+        mass = record.mass_kg if minor else None
+        made = xosc.Vehicle(record.id, category, box, *_axles(actor, record.axles), *bounds, mass)
     made.add_property(*INTERPOLATION)
     return made
 
 
-def _axles(actor: ActorInfo) -> tuple[xosc.Axle, xosc.Axle]:
+def _without_axles(record: ActorRecord, box: xosc.BoundingBox, minor: int) -> xosc.Pedestrian | xosc.MiscObject:
+    if record.thing:
+        return xosc.MiscObject(record.id, record.mass_kg, getattr(xosc.MiscObjectCategory, record.category), box)
+    model = record.id if minor == 0 else None  # the schema of 1.0 wants one
+    return xosc.Pedestrian(record.id, record.mass_kg, getattr(xosc.PedestrianCategory, record.category), box, model)
+
+
+def _axles(actor: ActorInfo, axles: Axles) -> tuple[xosc.Axle, xosc.Axle]:
     """Front and rear; the rear one is the origin."""
-    front, rear = (overhang.of(actor.length_m) for overhang in OVERHANGS[actor.type])
-    wheel, track = _WHEEL_M.get(actor.type, 0.65), 0.8 * actor.width_m
+    front, rear = axles.front.of(actor.length_m), axles.rear.of(actor.length_m)
+    wheel, track = axles.wheel_m, 0.8 * actor.width_m
     wheelbase = round(actor.length_m - front - rear, 6)
     return xosc.Axle(0.6, wheel, track, wheelbase, wheel / 2), xosc.Axle(0.0, wheel, track, 0.0, wheel / 2)
 

@@ -21,7 +21,7 @@ from scenariogeneration.xosc.enumerations import VersionBase
 from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.opendrive.signals import Controller
-from sgcad_core.formats.openscenario.writing.entities import HEIGHT_M, center_ahead_m, entity, environment
+from sgcad_core.formats.openscenario.writing.entities import center_ahead_m, entity, environment
 from sgcad_core.formats.openscenario.writing.events import EventActor, Handover, event_actors
 from sgcad_core.formats.openscenario.writing.parts import (
     CrossSection,
@@ -68,7 +68,7 @@ def write_xosc(
     """
     moves = [origin_motion(actor, t) for actor, t in zip(actors, _paired(actors, trajectories), strict=True)]
     minor, reaches = int(version[-1]), [center_ahead_m(actor) for actor in actors]
-    sizes = [(actor.width_m, HEIGHT_M[actor.type]) for actor in actors]
+    sizes = [(actor.width_m, actor.record.height_m) for actor in actors]
     timed = [_Timed(settled(m), ahead, size) for m, ahead, size in zip(moves, reaches, sizes, strict=True)]
     told = timed if handover is None else None
     parts = told or event_actors(moves, reaches, handover or Handover())

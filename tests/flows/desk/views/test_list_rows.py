@@ -86,6 +86,12 @@ def test_the_kind_of_crash_follows_from_the_declared_contact(told, kind):
     assert kind_of(told) == kind
 
 
+def test_a_crash_with_an_e_scooter_is_called_so():
+    told = contact("front", "left", "B1")
+    told["actors"].append({"id": "B1", "type": "e_scooter", "maneuver": "straight"})
+    assert kind_of(told) == "e-scooter"
+
+
 # ------------------------------------------------------------------ choosing
 ROWS = [
     Row("k/a", "k", "a", "generated", "whole", kind="angle", place="a T", confidence=0.9, told=5, accounted=True),

@@ -1,16 +1,15 @@
 """What the generator calls vehicles and their sides means the same to the reader."""
 
 import re
-from typing import get_args
 
 import pytest
 
 from research.generator.crash.vehicles import COLORS, KIND_WEIGHTS, bodies, by_kind, kind_told, models
 from research.generator.incidents import SITUATIONS, make_incident
 from research.generator.records import Phrase, records
+from sgcad_core.kinds import ACTORS
 from sgcad_core.reading.language import values, words
 from sgcad_core.reading.text.area_phrases import area_of
-from sgcad_core.records.specs import ActorKind
 
 DOORS = {"4-door", "four-door", "two-door", "2-door utility"}
 """Door counts, which name no kind by themselves."""
@@ -27,7 +26,7 @@ UNREAD = re.compile(
 
 
 def test_every_kind_has_names_and_bodies() -> None:
-    assert set(models()) == set(bodies()) == set(KIND_WEIGHTS) <= set(get_args(ActorKind))
+    assert set(models()) == set(bodies()) == set(KIND_WEIGHTS) <= set(ACTORS)
 
 
 def test_a_body_names_its_kind_by_a_word_of_the_vocabulary() -> None:

@@ -16,7 +16,7 @@ from sgcad_core.formats.openscenario.writing.entities import center_ahead_m
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.geometry.plane import wrap_angle
-from sgcad_core.records.specs import SIZE_M
+from sgcad_core.kinds import ACTORS
 from tests.sgcad_core.formats.xosc_samples import CROSSING, actor, trajectory
 
 K = np.arange(60)
@@ -27,7 +27,7 @@ def moving(name, turn=0.1):
     return trajectory(name, np.cumsum(0.5 * np.cos(heading)), np.cumsum(0.5 * np.sin(heading)), heading)
 
 
-@pytest.mark.parametrize("kind", SIZE_M)
+@pytest.mark.parametrize("kind", ACTORS)
 def test_every_kind_of_actor_has_its_true_box(kind):
     text = write_xosc([actor("V1", kind, (3.21, 1.23))], [moving("V1")], None)
     assert xosc_findings(text, None) == []
@@ -35,10 +35,10 @@ def test_every_kind_of_actor_has_its_true_box(kind):
     assert tuple(entity_boxes(text)["V1"]) == pytest.approx((3.21, 1.23, ahead, 0.0), abs=1e-6)
 
 
-@pytest.mark.parametrize("kind", SIZE_M)
+@pytest.mark.parametrize("kind", ACTORS)
 def test_a_vehicles_origin_is_its_rear_axle_and_others_stand_on_their_centers(kind):
-    length = SIZE_M[kind][0]
-    root = parse_xml(write_xosc([actor("V1", kind, SIZE_M[kind])], [moving("V1")], None), "xosc")
+    length = ACTORS[kind].length_m
+    root = parse_xml(write_xosc([actor("V1", kind, ACTORS[kind].size)], [moving("V1")], None), "xosc")
     center = float(root.find(".//BoundingBox/Center").get("x"))
     axles = {axle.tag: float(axle.get("positionX")) for axle in root.iterfind(".//Axles/*")}
     if kind in ("pedestrian", "object"):

@@ -11,9 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.geometry.plane import box_gaps
+from sgcad_core.kinds import ACTORS, mass_kg
 from sgcad_core.planner.aftermath.ground_friction import Drag, apply_friction
 from sgcad_core.planner.aftermath.hitch import hitched
-from sgcad_core.planner.aftermath.impact import MASS_KG, Body, body, collide, compliance, mass_kg, solve
+from sgcad_core.planner.aftermath.impact import Body, body, collide, compliance, solve
 from sgcad_core.planner.aftermath.wreck import Wreck
 from sgcad_core.planner.aftermath.wreck_bodies import Mover, center_of, separation, touch_points
 
@@ -77,9 +78,9 @@ def test_an_impulse_of_the_inverse_compliance_changes_the_velocity_as_wanted() -
 
 
 def test_what_a_vehicle_tows_adds_to_its_mass() -> None:
-    assert mass_kg("car", CAR) == MASS_KG["car"]
-    assert mass_kg("pickup", (11.1, 2.0)) > MASS_KG["pickup"] + 400
-    assert mass_kg("truck", (20.0, 2.5)) > 15000
+    assert mass_kg("car", CAR[0]) == ACTORS["car"].mass_kg
+    assert mass_kg("pickup", 11.1) > ACTORS["pickup"].mass_kg + 400
+    assert mass_kg("truck", 20.0) > 15000
 
 
 @settings(max_examples=150, deadline=None)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sgcad_core.execution.contact import CLEARANCE_TOLERANCE_M, avoided, closest_approach, first_contact
-from sgcad_core.metrics.drivability import WHEELED, driving_peaks
+from sgcad_core.metrics.drivability import driving_peaks
 from sgcad_core.planner import Plan, plan
 from sgcad_core.records.specs import CLEARANCE_M, Actor, BehaviorSpec, Evasion, NearCrash, size_m
 from tests.sgcad_core.planner.crash_scenes import draw_scene, network
@@ -142,6 +142,6 @@ def test_drawn_conflicts_are_parted_within_the_limits_of_driving(seed):
     closest = closest_approach(made.trajectories, sizes, (first.striker, first.struck))
     assert avoided(told, first_contact(made.trajectories, sizes), closest), (closest, CLEARANCE_TOLERANCE_M)
     for a in behavior.actors:
-        if a.kind in WHEELED:
+        if a.record.wheeled:
             seen = driving_peaks(track(made, a.id), sizes[a.id][0], backing=a.maneuver == "backing")
             assert not seen.excesses(behavior.surface)

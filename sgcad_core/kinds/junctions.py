@@ -1,6 +1,5 @@
-"""The closed kinds, one record each: junctions, roads and maneuvers, and what is named in reports and cannot be drawn.
+"""Junctions that can be drawn, one record each, and places that reports name and that cannot be drawn.
 
-Specs, layout, generator, reader and validators take their kinds from here; docs/kinds.md lists what a new one touches.
 Plain data: knows no pydantic, no narrative and no file format. Wordings stand in `sgcad_core/reading/language`; a
 record names its rule.
 """
@@ -10,14 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Literal
 
+from sgcad_core.kinds.roads import ALLEY, DRIVEWAY, RAMP, ROAD, RoadKind
+
 JunctionKind = Literal["none", "roundabout", "parking_lot", "t", "four_leg", "alley", "driveway", "ramp"]
-RoadKind = Literal["road", "driveway", "ramp"]
-Maneuver = Literal[
-    "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",
-    "lane_change_left", "lane_change_right", "merge", "overtaking", "crossing_centerline",
-    "departing_road_left", "departing_road_right", "backing", "other",
-]  # fmt: skip
-ROAD: Final = "road"
 T: Final = "t"
 FOUR_LEG: Final = "four_leg"
 ROUNDABOUT: Final = "roundabout"
@@ -25,18 +19,11 @@ PARKING_LOT: Final = "parking_lot"
 WORK_ZONE: Final = "work_zone"
 MEDIAN_OPENING: Final = "median_opening"
 GORE: Final = "gore"
-DRIVEWAY: Final = "driveway"
-ALLEY: Final = "alley"
-RAMP: Final = "ramp"
-"""Names of junctions and roads for code that treats one of them apart; no other module spells them (a test looks)."""
+"""Names of junctions and places for code that treats one of them apart; no other module spells them (a test looks)."""
 PLAIN: Final = "plain"
 FOUR: Final = "four"
 MERGE: Final = "merge"
 """Layouts of made reports that are not called as their kind is (`Junction.layout`)."""
-JOINING: Final = (DRIVEWAY, RAMP)
-"""Roads that lead to or from a street and are told of by a word alone."""
-UNPAINTED: Final = (DRIVEWAY, ALLEY)
-"""What networks call roads that carry no markings; in a spec an alley is a driveway that says so (`Road.alley`)."""
 
 
 @dataclass(frozen=True)
@@ -78,12 +65,6 @@ JUNCTIONS: tuple[Junction, ...] = (
 """Kinds that a text names come in the order in which they win where two are named at one place."""
 INTERSECTIONS: tuple[str, ...] = tuple(one.layout for one in JUNCTIONS if one.layout and one.meets and one.stem == ROAD)
 """Layouts of made reports in which streets meet."""
-ROADS: tuple[RoadKind, ...] = (ROAD, DRIVEWAY, RAMP)
-MANEUVERS: tuple[Maneuver, ...] = (
-    "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",
-    "lane_change_left", "lane_change_right", "merge", "overtaking", "crossing_centerline",
-    "departing_road_left", "departing_road_right", "backing", "other",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -125,8 +106,3 @@ def junction_kind(kind: JunctionKind) -> Junction:
 def unsupported_kind(kind: str) -> Unsupported:
     """The record of a kind that cannot be drawn. Raises KeyError for one that there is not."""
     return {record.kind: record for record in UNSUPPORTED}[kind]
-
-
-CrashRole = Literal["initiator", "responder", "bystander"]
-"""Who made a crash's conflict, who was left to deal with it, who took no part in the first contact."""
-CRASH_ROLES: tuple[CrashRole, ...] = ("initiator", "responder", "bystander")

@@ -1,0 +1,15 @@
+"""Pre-crash maneuvers, and the parts that actors have in a crash. Plain data."""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+Maneuver = Literal[
+    "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",
+    "lane_change_left", "lane_change_right", "merge", "overtaking", "crossing_centerline",
+    "departing_road_left", "departing_road_right", "backing", "other",
+]  # fmt: skip
+MANEUVERS: tuple[Maneuver, ...] = get_args(Maneuver)
+CrashRole = Literal["initiator", "responder", "bystander"]
+"""Part in a crash: made the conflict, was left to deal with it, took no part in the first contact."""
+CRASH_ROLES: tuple[CrashRole, ...] = get_args(CrashRole)
