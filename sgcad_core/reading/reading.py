@@ -48,8 +48,6 @@ from sgcad_core.reading.text.traced_text import Traced
 from sgcad_core.records.edits import Edit
 from sgcad_core.records.facts import Fact
 
-_LOST = rule("meeting.lost")
-
 
 @dataclass(frozen=True)
 class Reading:
@@ -188,7 +186,7 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     states = {called.get(vehicle, vehicle): told.state for vehicle, told in seen.signals.items()}
     roads, facts = renamed(roads, called), tuple(renamed(fact, called) for fact in facts)
     crash = replace(roads.crash, gap=_gap(narrative, found, named, roads.crash))
-    lost = bool(_LOST.search(narrative))
+    lost = bool(rule("meeting.lost").search(narrative))
     return Reading(narrative, found, crash, replace(roads, crash=crash), states, lost, facts, called=called)
 
 

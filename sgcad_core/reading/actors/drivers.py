@@ -19,8 +19,6 @@ _AGAINST = (("plaintiff", "defendant"), ("claimant", "respondent"), ("claimant",
             ("petitioner", "respondent"), ("claimant", "defendant"))  # fmt: skip
 """Who stand against each other."""
 _DROVE = rule("drivers.drove")
-_CALLED = rule("drivers.called")
-_PARTY = rule("drivers.party")
 _POSSESSOR = rule("drivers.possessor")
 
 
@@ -33,7 +31,7 @@ class Drivers(NamedTuple):
         """The sentence with the vehicle in place of who drives it."""
         text = _POSSESSOR.sub("", text)
         text = _DROVE.sub(_driven, text)
-        return _PARTY.sub(self._number, text) if self.called else text
+        return rule("drivers.party").sub(self._number, text) if self.called else text
 
     def _number(self, match: re.Match[str]) -> str:
         return self.called.get(match["who"].lower(), match.group())
@@ -57,7 +55,7 @@ def drivers(told: Iterable[str], who: Roster) -> Drivers:
 
 
 def _named(text: str) -> Iterator[tuple[str, str]]:
-    for m in (*_CALLED.finditer(text), *_DROVE.finditer(_POSSESSOR.sub("", text))):
+    for m in (*rule("drivers.called").finditer(text), *_DROVE.finditer(_POSSESSOR.sub("", text))):
         if party := next((word for word in _PARTIES if word in m["who"].lower().split()), None):
             yield party, m["v"]
 

@@ -8,7 +8,6 @@ _MENTION = rule("vehicles.mention")
 _STOP = rule("vehicles.stop")
 BRACKETED = rule("vehicles.bracketed")
 INTRODUCED = rule("references.introduced")
-_LEAD = rule("vehicles.lead")
 
 
 def descriptions(text: str, vehicle: str) -> list[str]:
@@ -35,7 +34,7 @@ def introductions(text: str, vehicle: str) -> list[str]:
 
 def _description_end(text: str, start: int) -> int:
     """Where the description that begins at `start` ends; `start` itself if there is none."""
-    lead = _LEAD.match(text, start)
+    lead = rule("vehicles.lead").match(text, start)
     if not lead or _STOP.match(text, lead.end()):
         return start
     at = lead.end()

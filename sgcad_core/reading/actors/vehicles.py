@@ -18,11 +18,6 @@ from sgcad_core.reading.motion.motion_record import Cue
 from sgcad_core.records.specs import ActorKind
 
 MENTION = rule("vehicles.mention")
-_YEAR = rule("vehicles.whole_year")
-_NO_MODEL = rule("vehicles.no_model")
-
-
-_STOP = rule("vehicles.stop")
 _BESIDE = rule("references.unnumbered")
 """A mark that `number_parked` and `number_cyclists` leave, since no report writes so."""
 
@@ -100,7 +95,7 @@ class Roster:
         text = self._named.sub(self._number, text) if self._named else text
         text = rule("vehicles.number_in_brackets").sub(r" \1", text)
         text = rule("vehicles.repeated_number").sub(self._once, text)
-        text = _OCCUPIED.sub(r"\1 ", phrases.without_descriptions(text))
+        text = rule("vehicles.occupied").sub(r"\1 ", phrases.without_descriptions(text))
         text = text if self.counted or not self._full else self._full.sub(self._by_name, text)
         text = rule("vehicles.repeated_number").sub(self._once, rule("vehicles.number_in_brackets").sub(r" \1", text))
         return rule("common.space").sub(" ", text).strip()
@@ -131,9 +126,6 @@ class Roster:
         return match.group(2) or self.aliases[match.group(1).lower()]
 
 
-_OCCUPIED = rule("vehicles.occupied")
-
-
 def _keep_number(match: re.Match[str], ids: tuple[str, ...], counted: bool) -> str:
     """The number in place of its description; what that tells of its way ("a westbound van (V1)") stays before it."""
     if match.group(2) not in ids:
@@ -161,12 +153,14 @@ def _marked(identity: Identity) -> Identity:
 _LETTERS: dict[ActorKind, str] = {"pedestrian": "P", "bicycle": "B"}
 
 
-_NO_NUMBER = rule("vehicles.no_number")
-
-
 def _numbers(told: list[str]) -> list[str]:
     """The ids in order, the first one whatever it is; one far beyond the others is a model (Volvo V70), no vehicle."""
-    named = (m for text in told for m in _NO_MODEL.finditer(text) if not _NO_NUMBER.match(text, m.start()))
+    named = (
+        m
+        for text in told
+        for m in rule("vehicles.no_model").finditer(text)
+        if not rule("vehicles.no_number").match(text, m.start())
+    )
     kept: list[int] = []
     for n in sorted({int(m[0][1:]) for m in named if len(m[0]) <= _LONGEST_ID}):
         if n and (not kept or n <= kept[-1] + 2):
@@ -240,7 +234,12 @@ def _model(words: str, start: int) -> str | None:
     """The one or two words behind the make that are neither body nor verb."""
     found: list[str] = []
     for word in rule("vehicles.word").findall(words[start:])[:3]:
-        if word in ",;()" or _STOP.fullmatch(word) or word.lower() in BODY_WORDS or _YEAR.fullmatch(word):
+        if (
+            word in ",;()"
+            or rule("vehicles.stop").fullmatch(word)
+            or word.lower() in BODY_WORDS
+            or rule("vehicles.whole_year").fullmatch(word)
+        ):
             break
         bare = word.rstrip(".,")
         if rule("vehicles.doors").match(word) or word.lower() in COLORS or bare.lower() in MAKES or bare in found:

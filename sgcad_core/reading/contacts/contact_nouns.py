@@ -27,17 +27,12 @@ class Touch(NamedTuple):
 
 _PUSHES = (("v1", "v2", "a2"), ("v3", "v4", "a4"), ("v5", "v6", "a6"))
 """Groups of who is pushed, into whom, and where."""
-_NAMED = rule("contact_nouns.named")
-_TOOK = rule("contact_nouns.took")
-_RECEIVED = rule("contact_nouns.received")
-_CAUSED = rule("contact_nouns.caused")
-_TOGETHER = rule("contact_nouns.together")
 _NOTHING = rule("contact_nouns.nothing")
 
 
 def touches(text: str) -> Iterator[Touch]:
     """Every contact that nouns tell in a sentence, in the order of their certainty."""
-    told = (says.BETWEEN, says.BOTH_PARTS, _NAMED, _CAUSED)
+    told = (says.BETWEEN, says.BOTH_PARTS, rule("contact_nouns.named"), rule("contact_nouns.caused"))
     for m in (m for pattern in told for m in pattern.finditer(text)):
         if not _NOTHING.search(text[: m.start()]):
             front = "front" if rule("contact_nouns.head_on").match(text[m.end() :]) else None
@@ -48,9 +43,9 @@ def touches(text: str) -> Iterator[Touch]:
     for m in says.PUSHED.finditer(text):
         a, b, area = next((m[v], m[w], m[z]) for v, w, z in _PUSHES if m[v])
         yield Touch(a, b, "front", _maybe(area) or "back", "pushed")
-    for m in _RECEIVED.finditer(text):
+    for m in rule("contact_nouns.received").finditer(text):
         yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "received", True)
-    for m in _TOOK.finditer(text):
+    for m in rule("contact_nouns.took").finditer(text):
         yield Touch(
             m["v1"], m["v2"], _maybe(m["a0"]) or _maybe(m["a1"]) or area_of(m["how"]), _maybe(m["a2"]), "took", True
         )
@@ -58,7 +53,7 @@ def touches(text: str) -> Iterator[Touch]:
 
 def together(text: str) -> Iterator[Touch]:
     """ "... came together, the front of V1 to the left side of V2": no verb, so only where no verb tells more."""
-    for m in _TOGETHER.finditer(text):
+    for m in rule("contact_nouns.together").finditer(text):
         if not _NOTHING.search(text[: m.start()]):
             yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "together")
     for m in rule("contact_nouns.into").finditer(text):

@@ -18,8 +18,6 @@ from sgcad_core.records.specs import Maneuver
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
 _CORNER, _OPEN_SIDE, _GUESSED, _LANE, _HEADING, _TURN, _SWAP = 0.1, 0.25, 0.2, 0.2, 0.3, 0.5, 0.7
 """Prices: what a reading must gain by its checks to be preferred."""
-
-
 ONWARD = "drives straight on"
 
 

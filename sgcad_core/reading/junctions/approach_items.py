@@ -16,7 +16,6 @@ from sgcad_core.records.specs import Turn
 
 Use = Literal["R", "T", "L"]
 Uses = frozenset[str]
-
 _TURNS: dict[Uses, Turn] = {
     frozenset("R"): "right", frozenset("RT"): "through_right", frozenset("T"): "through",
     frozenset("LT"): "left_through", frozenset("L"): "left", frozenset("LR"): "left_right", frozenset("LRT"): "any",

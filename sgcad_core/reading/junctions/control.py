@@ -23,18 +23,13 @@ from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, STORY_ROLES
 from sgcad_core.records.specs import Compass
 
 Control = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yield"]
-
 _SIGNAL = rule("control.signal")
-_SIGNAL_OUT = rule("control.signal_out")
 _NOT_SIGNAL = rule("control.not_signal")
 _STOP = rule("control.stop")
-_ALL_STOP = rule("control.all_stop")
 _YIELD = rule("control.yield")
-_FLASHING = rule("control.flashing")
 _NOT_CONTROL = rule("control.not_control")
 _CONSTRUCTION = rule("control.construction")
-
-
+_ALL_STOP, _FLASHING = rule("control.all_stop"), rule("control.flashing")
 _CONTROLS: tuple[tuple[Control, Rule], ...] = (
     ("all_way_stop", _ALL_STOP), ("flashing", _FLASHING), ("signal", _SIGNAL), ("stop", _STOP), ("yield", _YIELD),
 )  # fmt: skip
@@ -54,7 +49,7 @@ def control_of(told: Sequence[Statement]) -> tuple[Control, Cue | None]:
 
 
 def _first_control(said: Sequence[Statement]) -> tuple[Control, Cue] | None:
-    out = any(_SIGNAL_OUT.search(t.text) for t in said)
+    out = any(rule("control.signal_out").search(t.text) for t in said)
     bare = [t._replace(text=_NOT_CONTROL.sub(" ", _NOT_SIGNAL.sub(" ", t.text))) for t in said]
     for control, by in _CONTROLS:
         if control == "signal" and out:
@@ -76,14 +71,10 @@ def controlled(story: Sequence[Statement]) -> bool:
 
 
 # ------------------------------------------------------------------ which legs
-_SIGN = rule("control.sign")
 _WAY = rule("control.way")
-_FOR = rule("control.for")
-_SUBJECT = rule("control.subject")
 _SIDE_ROAD = rule("control.side_road")
 _NEAR = 40
 """Characters behind a sign in which a direction may be told."""
-_ON_SIDE_ROAD = rule("control.on_side_road")
 
 
 def signed_legs(
@@ -112,7 +103,7 @@ def _signed(
 ) -> Iterator[list[Compass]]:
     text = _NOT_CONTROL.sub(" ", told.text)
     last = 0
-    for sign in _SIGN.finditer(text):
+    for sign in rule("control.sign").finditer(text):
         before, behind = text[last : sign.start()], text[sign.end() :]
         axis = _street_of_sign(before, sign.group() + behind, sign.end() - sign.start(), names)
         yield [axis, turned(axis, 180)] if axis else _legs_of_sign(before, behind, told, vehicles, roads)
@@ -136,15 +127,15 @@ def _legs_of_sign(
     before: str, behind: str, told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
 ) -> list[Compass]:
     """ "stop sign for northbound traffic", "on the side street", else who or what is named last before the sign."""
-    whom = _FOR.match(behind)
+    whom = rule("control.for").match(behind)
     if whom:
         return _legs_of_words(whom[0])
-    if _ON_SIDE_ROAD.match(behind):
+    if rule("control.on_side_road").match(behind):
         across = [] if _SIDE_ROAD.search(before) else _crossing_legs(before, told, vehicles)
         return across or _side_legs(roads)
     clause = rule("control.contrast").split(before)[-1]
     owner = [m for v in vehicles for m in rule("common.named_vehicle").given(vehicle=v.id).finditer(clause)]
-    subjects = list(_SUBJECT.finditer(clause))
+    subjects = list(rule("control.subject").finditer(clause))
     if subjects and told.role != "opening" and (not owner or _only_direction(clause, subjects[-1])):
         return _legs_of_words(subjects[-1]["whom"])
     if _SIDE_ROAD.search(clause):
@@ -169,17 +160,13 @@ def _crossing_legs(before: str, told: Statement, vehicles: Sequence[VehicleFacts
 
 def _only_direction(clause: str, subject: re.Match[str]) -> bool:
     """ "the northbound road was controlled by a": a road, not the vehicle's own motion."""
-    return bool(_ROAD_HAS.match(clause[subject.end() :]))
-
-
-_ROAD_HAS = rule("control.road_has")
-_LEG = rule("control.leg")
+    return bool(rule("control.road_has").match(clause[subject.end() :]))
 
 
 def _legs_of_words(words: str) -> list[Compass]:
     axis = axis_in(words)
     if axis:
         return [axis, turned(axis, 180)]
-    if leg := _LEG.search(words):
+    if leg := rule("control.leg").search(words):
         return [way for m in _WAY.finditer(leg["from"] or leg["noun"]) if (way := compass_of(m["way"]))]
     return [turned(way, 180) for m in _WAY.finditer(words) if (way := compass_of(m["way"]))]

@@ -57,12 +57,10 @@ class JunctionFacts:
 
 _NAMED = tuple((record, rule(record.rule)) for record in JUNCTIONS if record.rule)
 _JUNCTION = rule("junction.junction")
-_NO_JUNCTION = rule("junction.no_junction")
 _SKEWED, _OFFSET = rule("junction.skewed"), rule("junction.offset")
 _SKEW_DEG, _MOST_SKEW_DEG = 30, 40
 """Where no angle is told: AASHTO calls 60 degrees the least that a junction should have."""
 CIRCLE_LANES = rule("junction.roundabout_lanes")
-_CIRCLE_LANE = rule("junction.roundabout_lane")
 
 
 def junction_of(
@@ -157,7 +155,7 @@ def _named(story: Sequence[Statement]) -> tuple[JunctionKind | Literal["some"], 
     """The first junction kind that the story names, and where; "some" if it only says intersection."""
     some: Cue | None = None
     for t in story:
-        text = MEDIAN_OPENING.sub(" ", _NO_JUNCTION.sub(" ", t.text))
+        text = MEDIAN_OPENING.sub(" ", rule("junction.no_junction").sub(" ", t.text))
         found = [(match, words, record) for record, words in _NAMED if (match := words.search(text))]
         if found:
             first, words, record = min(found, key=lambda place: place[0].start())
@@ -179,7 +177,7 @@ def _circle_lanes(story: Sequence[Statement]) -> int | None:
     """How many lanes go around in a roundabout, where the story tells it."""
     if match := next((m for t in story if (m := CIRCLE_LANES.search(t.text))), None):
         return 1 if match["one"] else 2
-    return 2 if any(_CIRCLE_LANE.search(t.text) for t in story) else None
+    return 2 if any(rule("junction.roundabout_lane").search(t.text) for t in story) else None
 
 
 def _ramp_used(vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> bool:

@@ -15,11 +15,8 @@ from sgcad_core.reading.roads.road_merge import GatheredRoad
 from sgcad_core.reading.text.compass import between, compass_of, turned
 from sgcad_core.records.specs import Compass
 
-_NUMBERED = rule("common.vehicle_begins")
 SIDE_ROAD = rule("junction.side_road")
 ENDS = rule("junction.ends")
-_TURN_SIDE = rule("junction.turn_side")
-_DRIVE_SIDE = rule("junction.drive_side")
 BESIDE = (*DRIVES, RAMP, "side_road")
 """Where vehicles come from that come in by the stem."""
 
@@ -70,9 +67,13 @@ def _stem_meant(story: Sequence[Statement], vehicles: Sequence[VehicleFacts]) ->
     """The side that a vehicle waited, slowed or meant to turn to."""
     for v in sorted(vehicles, key=lambda v: v.target is None):
         for t in story:
-            turn = _TURN_SIDE.search(t.text)
+            turn = rule("junction.turn_side").search(t.text)
             mine = v.id in rule("common.vehicle").findall(t.text[: turn.start()])[-1:] if turn else False
-            if turn and v.heading and (mine or (t.subject == v.id and not _NUMBERED.search(t.text[: turn.start()]))):
+            if (
+                turn
+                and v.heading
+                and (mine or (t.subject == v.id and not rule("common.vehicle_begins").search(t.text[: turn.start()])))
+            ):
                 return turned(v.heading, -90 if (turn["a"] or turn["b"]).lower() == "left" else 90)
     return None
 
@@ -113,7 +114,7 @@ def stem_told(
         way = compass_of(ends["dir"]) if ends and ends["dir"] and rule("junction.junction").search(t.text) else None
         if ends and way:
             return turned(way, 180), Cue(t.number, ends["dir"], ENDS.id)
-        place = SIDE_ROAD.search(t.text) or _DRIVE_SIDE.search(t.text)
+        place = SIDE_ROAD.search(t.text) or rule("junction.drive_side").search(t.text)
         if place:
             word = next(filter(None, place.groups()))
             found = _bearing(word, t, vehicles, lead)

@@ -4,7 +4,7 @@
 the rules of a role in their order. Data files: `vocabulary/*.yaml` and `rules/*.yaml`; see docs/language.md.
 """
 
+from sgcad_core.reading.language.data import values, words
 from sgcad_core.reading.language.rules import Rule, of_role, rule
-from sgcad_core.reading.language.vocabulary import slot, values, words
 
-__all__ = ["Rule", "of_role", "rule", "slot", "values", "words"]
+__all__ = ["Rule", "of_role", "rule", "values", "words"]

@@ -1,6 +1,6 @@
 """All word classes and rules as one immutable value, and patterns with their slots filled. Reads the data files.
 
-A `Language` can be made with changed records, which is how the tests are tested (`research/benchmarks/mutants.py`).
+Tests make a `Language` with changed records.
 """
 
 from __future__ import annotations
@@ -96,6 +96,16 @@ def vocabulary() -> Language:
             raise fault(file, name, f"{classes[name].file} has a class of that name", "give one of both another name")
         classes[name] = word_class(file, name, record)
     return Language(classes, {})
+
+
+def words(name: str) -> tuple[str, ...]:
+    """The words of a class in the order of the file. Raises ConfigError where there is no such class."""
+    return tuple(vocabulary().values(name))
+
+
+def values(name: str) -> dict[str, Any]:
+    """Word -> meaning of a class: "northeast" -> "NE" of compass."""
+    return vocabulary().values(name)
 
 
 def _records(folder: Path) -> list[tuple[str, str, object]]:

@@ -45,14 +45,7 @@ class Statement(NamedTuple):
 
 _SUBJECT = rule("clauses.subject")
 _VERB = rule("clauses.verb")
-_PARTICIPLE = rule("clauses.participle")
-_PREPOSITION = rule("clauses.preposition")
-_STANDS_BESIDE = rule("clauses.stands_beside")
-_RESUMES = rule("clauses.resumes")
-_ASIDE = rule("clauses.aside")
 _BESIDE = rule("clauses.beside")
-_REPORTS = rule("clauses.reports")
-_DRIVER_OF = rule("clauses.driver_of")
 _PRONOUN = rule("clauses.pronoun")
 
 
@@ -196,7 +189,7 @@ def _resumed(
     if not before or not (beside or rule("clauses.told_aside").match(text, aside.end())):
         return []
     stop = next((m.start() for m in _SUBJECT.finditer(text, aside.end())), len(text))
-    onward = _RESUMES.search(text, aside.end(), stop)
+    onward = rule("clauses.resumes").search(text, aside.end(), stop)
     return [(onward.start(), onward.end(), before[-1][2])] if onward else []
 
 
@@ -233,20 +226,20 @@ def _last_two(both: re.Match[str], who: Roster) -> tuple[str, ...]:
 
 def _is_subject(text: str, match: re.Match[str]) -> bool:
     before = text[max(0, match.start() - 60) : match.start()]
-    behind = _ASIDE.sub("", text[match.end() :])
+    behind = rule("clauses.aside").sub("", text[match.end() :])
     if rule("clauses.driver_told").search(before) and rule("clauses.tells_of_himself").match(behind):
         return True
     if _BESIDE.search(before):
         if rule("clauses.of_neighbor").search(before) and behind.startswith(" that "):
             return False
-        return bool(rule("clauses.relative").match(behind) or _STANDS_BESIDE.match(behind))
-    if _DRIVER_OF.search(before):
+        return bool(rule("clauses.relative").match(behind) or rule("clauses.stands_beside").match(behind))
+    if rule("clauses.driver_of").search(before):
         return _acts(behind) and not (behind.startswith(" and ") and rule("clauses.touched_part").search(before))
-    if _PREPOSITION.search(before):
+    if rule("clauses.preposition").search(before):
         if rule("clauses.yielded").search(before) and rule("clauses.located_doing").match(behind):
             return True
-        reported = _REPORTS.search(before)
-        return bool(_PARTICIPLE.match(behind)) or bool(reported and _VERB.match(behind))
+        reported = rule("clauses.reports").search(before)
+        return bool(rule("clauses.participle").match(behind)) or bool(reported and _VERB.match(behind))
     return _acts(behind)
 
 

@@ -7,8 +7,6 @@ from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.motion.motion_record import Deed, Motion
 
-_UNCODED = rule("critical_events.uncoded")
-
 
 def read_code(found: dict[str, Motion], told: Statement, who: Roster) -> None:
     text = told.text.lower()
@@ -16,7 +14,7 @@ def read_code(found: dict[str, Motion], told: Statement, who: Roster) -> None:
         return
     named = [v for v in MENTION.findall(told.text) if v in who.ids]
     owner = named[0] if named else told.subject
-    if owner not in found or _UNCODED.match(text):
+    if owner not in found or rule("critical_events.uncoded").match(text):
         return
     if rule("critical_events.other_vehicle").search(text):
         _other_code(found, owner, text, told.number, who)

@@ -10,35 +10,32 @@ from sgcad_core.reading.text.compass import compass_of, turned
 from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.records.specs import Compass
 
-_HEADING = rule("headings.heading")
-_HEADING_BARE = rule("headings.heading_bare")
-_GAP_STOPS = rule("headings.gap_stops")
 _FROM = rule("headings.from")
-_BOUND_ASIDE = rule("headings.bound_aside")
-_FOLLOWING = rule("headings.following")
 _CAME_WAY = rule("headings.came_way")
-_FROM_BOUND = rule("headings.from_bound")
 _EXIT = rule("headings.exit")
 _TURN_BEFORE = rule("headings.turn_before")
-
-
 _WAYS = ("dir", "dir2", "dir3", "dir4")
 """Groups of the way in alternatives of a rule."""
 
 
 def read_heading(motion: Motion, text: str, weight: int) -> None:
-    told = [(m, by) for by in (_HEADING, _HEADING_BARE) for m in by.finditer(text)]
+    told = [(m, by) for by in (rule("headings.heading"), rule("headings.heading_bare")) for m in by.finditer(text)]
     for m, by in sorted(told, key=lambda found: found[0].start()):
         words = m.groupdict()
         gap = words.get("gap") or words.get("gap2") or ""
-        if not _GAP_STOPS.search(gap) and not _TURN_BEFORE.search(text[: m.start()]):
+        if not rule("headings.gap_stops").search(gap) and not _TURN_BEFORE.search(text[: m.start()]):
             _note_heading(motion, next(filter(None, map(words.get, _WAYS)), ""), weight, by.id)
             if way := compass_of(words.get("dir") or ""):
                 _note_sense(motion, m, way)
     for m in _CAME_WAY.finditer(text):
         if not _TURN_BEFORE.search(text[: m.start()]) and not rule("headings.came_way_not").search(text[: m.start()]):
             _note_heading(motion, m.group("dir"), weight, _CAME_WAY.id)
-    for by in (_FROM_BOUND, _BOUND_ASIDE, _FOLLOWING, rule("headings.on_course")):
+    for by in (
+        rule("headings.from_bound"),
+        rule("headings.bound_aside"),
+        rule("headings.following"),
+        rule("headings.on_course"),
+    ):
         for m in by.finditer(text):
             _note_heading(motion, m.group("dir"), weight, by.id)
     for m in _FROM.finditer(text):

@@ -13,8 +13,6 @@ from sgcad_core.reading.text.compass import between, compass_of, turned
 
 _TURNING = rule("deeds.turning")
 _LATER = rule("deeds.later")
-_TRY = rule("deeds.try")
-_EVASIVE = rule("deeds.evasive")
 _NOT = rule("deeds.not")
 _HOPED = ("overtaking", "lane_change", "lane_change_left", "lane_change_right", "merge")
 """What a vehicle may wait or prepare to do and never does."""
@@ -34,10 +32,14 @@ def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0)
         told = next((k for k in _SIDES if m.groupdict().get(k)), None)
         side = m[told].lower() if told else "left"
         before = text[max(0, m.start() - 60) : m.start()]
-        if _NOT.search(before) or _EVASIVE.search(text[: m.start()]) or rule("deeds.steering").search(before):
+        if (
+            _NOT.search(before)
+            or rule("deeds.evasive").search(text[: m.start()])
+            or rule("deeds.steering").search(before)
+        ):
             continue
         led = before + text[m.start() : m.start(told) if told else m.start()]
-        begun = _TRY.search(before[-14:]) or rule("deeds.begins").search(led)
+        begun = rule("deeds.try").search(before[-14:]) or rule("deeds.begins").search(led)
         later = _LATER.search(before) and not begun
         motion.deeds.append(
             Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.end())

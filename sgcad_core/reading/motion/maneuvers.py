@@ -67,8 +67,6 @@ _MOVING = (
     "overtaking",
     *_PLAIN,
 )
-
-
 _DEPARTURES: tuple[Maneuver, ...] = ("departing_road_left", "departing_road_right")
 
 

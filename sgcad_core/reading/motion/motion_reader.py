@@ -22,11 +22,6 @@ from sgcad_core.reading.text.speeds import read_speed, read_speeds_beside
 
 _WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3, "avoidance": 3, "conditions": 3,
                           "rest": 2}  # fmt: skip
-
-
-_STOPPED_AT_LAST = rule("motion_reader.stopped_at_last")
-_STOPPED_THERE = rule("motion_reader.stopped_there")
-_THROWN = rule("motion_reader.thrown")
 _UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health", "formal")
 
 
@@ -106,8 +101,14 @@ def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int
 
 def _until_stopped(text: str, after: bool) -> str:
     """Without the end of a way that a blow began: "spun and stopped in the road", "stopped facing west"."""
-    found = _STOPPED_AT_LAST.search(text) or (_STOPPED_THERE.search(text) if after else None)
-    return text[: found.start()] if found and (after or _THROWN.search(text[: found.start()])) else text
+    found = rule("motion_reader.stopped_at_last").search(text) or (
+        rule("motion_reader.stopped_there").search(text) if after else None
+    )
+    return (
+        text[: found.start()]
+        if found and (after or rule("motion_reader.thrown").search(text[: found.start()]))
+        else text
+    )
 
 
 def _until_hit(text: str) -> str:

@@ -15,7 +15,6 @@ from sgcad_core.reading.motion.motion_record import Cue
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES
 
 SignalState = Literal["green", "yellow", "red"]
-_HEDGED = rule("signal_states.hedged")
 
 
 class SignalTold(NamedTuple):
@@ -39,7 +38,7 @@ def signal_states(segments: Iterable[Segment]) -> Mapping[str, SignalTold]:
 
 def _told(segment: Segment) -> Iterator[SignalTold]:
     """States in the order of the text."""
-    if _HEDGED.search(segment.text):
+    if rule("signal_states.hedged").search(segment.text):
         return
     found = [
         (match.start(), SignalTold(told.yields["signal"], Cue(segment.number, match[0], told.id)))

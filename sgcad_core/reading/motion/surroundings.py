@@ -28,15 +28,15 @@ def read_kin(motion: Motion, text: str, weight: int, vehicle: str, who: Roster) 
 
 # ------------------------------------------------------------------ lane, access
 _LANE = rule("surroundings.lane")
-_OTHER_LANE = rule("surroundings.other_lane")
-_IN_LANE = rule("surroundings.in_lane")
 
 
 def read_lane(motion: Motion, text: str) -> None:
     if motion.lane or motion.lane_word:
         return
     for m in _LANE.finditer(text):
-        if _OTHER_LANE.search(text[: m.start()]) and not _IN_LANE.search(text[: m.start()]):
+        if rule("surroundings.other_lane").search(text[: m.start()]) and not rule("surroundings.in_lane").search(
+            text[: m.start()]
+        ):
             continue
         number = m.group("n") or m.group("num")
         nth = m.group("nth") or m.group("nth2")
@@ -69,7 +69,6 @@ def _lane_word(m: re.Match[str]) -> str:
 
 _ORIGIN = rule("surroundings.origin")
 _TARGET = rule("surroundings.target")
-_NEAR_DRIVE = rule("surroundings.approaching_driveway")
 _ON_DRIVE = rule("surroundings.on_drive")
 _OUT_OF_ALLEY = rule("surroundings.out_of_alley")
 _RAMP = rule("surroundings.ramp")
@@ -94,7 +93,7 @@ def _came_from(text: str, origin: re.Match[str] | None) -> tuple[Access, str, st
     if alley := _OUT_OF_ALLEY.search(text):
         return ALLEY, alley.group(), _OUT_OF_ALLEY.id
     drive, ramp, shoulder = (pattern.search(text) for pattern in (_ON_DRIVE, _RAMP, _SHOULDER))
-    if drive and not _NEAR_DRIVE.search(text):
+    if drive and not rule("surroundings.approaching_driveway").search(text):
         return DRIVEWAY, drive.group(), _ON_DRIVE.id
     if ramp:
         return RAMP, ramp.group(), _RAMP.id

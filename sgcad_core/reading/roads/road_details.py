@@ -24,9 +24,7 @@ class Curve(NamedTuple):
     cue: Cue
 
 
-_WAY = rule("road_details.way")
 _CURVE = rule("road_details.curve")
-_NEARBY = rule("road_details.nearby")
 _BARE_CURVE = rule("road_details.bare_curve")
 
 
@@ -44,7 +42,7 @@ def _curves(told: Statement, headings: Mapping[str, Compass]) -> Iterator[Curve]
         return
     for m in _CURVE.finditer(told.text):
         side = next(filter(None, m.groups())).lower()
-        if _NEARBY.search(told.text[: m.start()]):
+        if rule("road_details.nearby").search(told.text[: m.start()]):
             continue
         cue = Cue(told.number, m[0], _CURVE.id)
         yield Curve("left" if side == "left" else "right", _driven(told, m.start(), m.end(), headings), cue)
@@ -78,5 +76,7 @@ def _driven(told: Statement, start: int, end: int, headings: Mapping[str, Compas
         return headings[behind[1]]
     if before:
         return headings[before[-1]]
-    way = [compass_of(m[1]) for m in _WAY.finditer(told.text[:start]) if m[1].lower().endswith("bound")]
+    way = [
+        compass_of(m[1]) for m in rule("road_details.way").finditer(told.text[:start]) if m[1].lower().endswith("bound")
+    ]
     return way[-1] if way else None

@@ -60,15 +60,7 @@ def axis_in(text: str) -> Compass | None:
 
 
 _PAIR = rule("mentions.pair")
-
-_RUNS = rule("mentions.runs")
-_ON = rule("mentions.on")
-_LEFT_IT = rule("mentions.left_it")
-_FROM = rule("mentions.from")
-_ONTO = rule("mentions.onto")
-_RELATIVE = rule("mentions.relative")
 _VEHICLE = rule("mentions.vehicle")
-_BOTH_VEHICLES = rule("mentions.both_vehicles")
 
 
 def road_mentions(told: Iterable[Statement], ids: tuple[str, ...]) -> tuple[RoadMention, ...]:
@@ -157,16 +149,13 @@ def _toward(phrase: str) -> Compass | None:
 
 def _running(behind: str) -> Compass | None:
     """ "... ran north and south": the axis told right behind the noun."""
-    runs = _RUNS.match(behind)
+    runs = rule("mentions.runs").match(behind)
     return axis_in(behind[runs.end() : runs.end() + 40]) if runs else None
-
-
-_LANE_OF = rule("mentions.lane_of")
 
 
 def _lane_direction(lead: str) -> Compass | None:
     """ "in the eastbound lane of a": the road's axis."""
-    found = _LANE_OF.search(lead)
+    found = rule("mentions.lane_of").search(lead)
     way = compass_of(found[1]) if found else None
     return axis_of(way) if way else None
 
@@ -178,22 +167,19 @@ def _travel_axis(lead: str) -> Compass | None:
     return axis_of(way) if way else None
 
 
-_MEETS = rule("mentions.meets")
-
-
 def _relation(phrase: str, lead: str) -> Relation | None:
     """As the phrase says, else "other" behind "intersects", "intersection with"."""
     found = next((told.yields["relation"] for told in of_role("relation") if told.search(phrase)), None)
-    return found or ("other" if _MEETS.search(lead) and not _VEHICLE.search(lead[-40:]) else None)
+    return found or ("other" if rule("mentions.meets").search(lead) and not _VEHICLE.search(lead[-40:]) else None)
 
 
 def _drivers(lead: str, behind: str, ids: tuple[str, ...]) -> tuple[tuple[str, ...], How | None]:
     """Who drives on the road mentioned, told by the verb before or the relative clause behind."""
-    relative = _RELATIVE.match(behind)
+    relative = rule("mentions.relative").match(behind)
     if relative and rule("mentions.relative_begins").match(behind):
         return (relative[1],), "on"
     vehicles = [m for m in _VEHICLE.finditer(lead) if m[0] in ids]
-    everyone = list(_BOTH_VEHICLES.finditer(lead))
+    everyone = list(rule("mentions.both_vehicles").finditer(lead))
     last = max((m.end() for m in vehicles + everyone), default=-1)
     if last < 0:
         return (), None
@@ -214,12 +200,12 @@ def _joined(lead: str, vehicles: list[re.Match[str]]) -> tuple[str, ...]:
 
 
 def _how(tail: str) -> How | None:
-    if _FROM.search(tail):
+    if rule("mentions.from").search(tail):
         return "from"
-    if _ONTO.search(tail):
+    if rule("mentions.onto").search(tail):
         return "onto"
-    on = _ON.search(tail)
-    return "on" if on and not _LEFT_IT.search(tail) else None
+    on = rule("mentions.on").search(tail)
+    return "on" if on and not rule("mentions.left_it").search(tail) else None
 
 
 def _kind(phrase: str, head: str, lead: str) -> Kind:

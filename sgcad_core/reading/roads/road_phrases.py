@@ -9,7 +9,6 @@ from collections.abc import Iterator
 
 from sgcad_core.reading.language import rule
 
-_HEAD = rule("road_phrases.head")
 _STOP = frozenset({
     "a", "an", "the", "this", "that", "these", "another", "each", "both", "all", "of", "on", "in", "at", "into",
     "onto", "from", "to", "along", "near", "by", "for", "was", "is", "were", "are", "had", "has", "with", "where",
@@ -23,7 +22,7 @@ _DETERMINERS = ("a", "an", "the", "this", "that", "another", "each", "both", "al
 def noun_phrases(text: str) -> Iterator[tuple[int, int, int]]:
     """(start, start of the road word, end) of each road's noun phrase; of "freeway entrance ramp" the last word."""
     held: tuple[int, int, int] | None = None
-    for head in _HEAD.finditer(text):
+    for head in rule("road_phrases.head").finditer(text):
         start = _phrase_start(text, head.start())
         if "intersection" in head[0].lower() and "-lane" not in text[start : head.start()]:
             continue

@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from sgcad_core.reading.language import of_role, rule
-from sgcad_core.reading.language.rules import Rule
+from sgcad_core.reading.language import Rule, of_role, rule
 from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.motion.motion_record import Cue
 from sgcad_core.reading.roads.road_mentions import axis_in, axis_of
@@ -34,10 +33,8 @@ class SpeedLimit(NamedTuple):
 
 
 _LIMIT = rule("road_details.limit")
-_VALUE = rule("road_details.value")
 _ADVISED = rule("road_details.advised")
 _SIDE_WORD = rule("road_details.side_word")
-_WAY = rule("road_details.way")
 
 
 def speed_limits(told: Iterable[Statement], headings: Mapping[str, Compass]) -> tuple[SpeedLimit, ...]:
@@ -73,7 +70,7 @@ def _stated(text: str, names: StreetNames) -> list[Speed]:
 def _with_units(text: str) -> Iterator[Speed]:
     """Speeds behind a word for a limit; those in km/h only where none is in mph."""
     start = _LIMIT.search(text)
-    values = list(_VALUE.finditer(text, start.start())) if start else []
+    values = list(rule("road_details.value").finditer(text, start.start())) if start else []
     values = [m for m in values if not _ADVISED.search(text[: m.start()])]
     for m in [m for m in values if m[2].lower() == "mph"] or values:
         mph = int(m[1]) if m[2].lower() == "mph" else 5 * round(int(m[1]) * MPH_PER_KMPH / 5)
@@ -130,7 +127,7 @@ def _named(part: str, names: StreetNames) -> Compass | None:
 
 
 def _axis_of(part: str, headings: Mapping[str, Compass]) -> Compass | None:
-    ways = [compass_of(m[1]) for m in _WAY.finditer(part)]
+    ways = [compass_of(m[1]) for m in rule("road_details.way").finditer(part)]
     named = [headings[v] for v in rule("common.vehicle").findall(part) if v in headings]
     axes = {axis_of(w) for w in ways if w} or {axis_of(h) for h in named}
     return next(iter(axes)) if len(axes) == 1 else None

@@ -5,10 +5,7 @@ from __future__ import annotations
 from sgcad_core.reading.language import of_role, rule
 
 _IN_EACH = rule("turn_lanes.in_each")
-
-
 """Not "in the lane for left-turning traffic": somebody may wait there."""
-_ONLY = rule("turn_lanes.only")
 
 
 def spelled_out(text: str) -> str:
@@ -16,5 +13,5 @@ def spelled_out(text: str) -> str:
     lanes and a left turn lane in each direction" both are told for each direction."""
     for lane in of_role("lane_for_turns"):
         text = lane.sub(r"\2-turn lane\1", text)
-    text = _ONLY.sub(r"\1-turn \2", text)
+    text = rule("turn_lanes.only").sub(r"\1-turn \2", text)
     return _IN_EACH.sub(r"\1 lanes in each direction with a \2-turn lane in each direction", text)

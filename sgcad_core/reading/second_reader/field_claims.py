@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 _THROUGH = {"through_right": "through", "left_through": "through"}
 """Readers differ in whether they say that one may also turn from a through lane."""
-
 _ONWARD = (
     "straight",
     "slowing",
@@ -38,13 +37,11 @@ _ONWARD = (
     "crossing_centerline",
 )
 """Maneuvers of those who go on the way that they head."""
-
 KINDS = (
     "kind", "heading", "maneuver", "exit", "lane", "speed", "contact", "areas", "legs", "lanes", "turns", "median",
     "curve", "limit", "control", "light", "weather", "surface",
 )  # fmt: skip
 """Kinds of fields, for which a combiner has weights."""
-
 UNKNOWN_P = 0.5
 """Of a value whose model gives no probabilities, as servers do not, or has no head that says whether it is told: the
 weights alone then decide."""

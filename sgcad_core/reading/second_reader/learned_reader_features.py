@@ -19,7 +19,6 @@ from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, SUBJECT
 from sgcad_core.reading.text.driving_study_style import tells_study
 from sgcad_core.reading.text.traced_text import Traced
 
-_TOKEN = rule("wordings.token")
 _PAIRS = (
     ("subject", "other"), ("subject_area", "other_area"), ("subject", "subject_area"), ("other", "other_area"),
     ("subject", "other_area"), ("other", "subject_area"), ("met", "other"),
@@ -92,7 +91,7 @@ def _place(number: int, hit: int | None) -> str:
 
 
 def _tokens(text: str, met: str | None) -> list[str]:
-    return [_role(m.group(), met) for m in _TOKEN.finditer(text.lower().replace("'s", ""))]
+    return [_role(m.group(), met) for m in rule("wordings.token").finditer(text.lower().replace("'s", ""))]
 
 
 def _role(word: str, met: str | None) -> str:

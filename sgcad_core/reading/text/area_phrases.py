@@ -13,15 +13,6 @@ Zone = str
 """An area of a vehicle ("left") or a corner ("front/left": the end, then the flank)."""
 
 
-_POSSESSIVE = rule("zones.possessive")
-_FLANKPARTS = rule("zones.flankparts")
-_CORNER = rule("zones.corner")
-_CORNERED = rule("zones.cornered")
-
-
-_ITS_AREA = rule("zones.its_area")
-
-
 def area_of(words: str) -> Zone | None:
     """What an area phrase means: "left door" -> "left", "left front" -> "front/left"; None if it names no side.
 
@@ -32,9 +23,9 @@ def area_of(words: str) -> Zone | None:
     flank: Area | None = next((side.yields["area"] for side in of_role("flank") if side.search(text)), None)
     front = bool(rule("zones.front").search(text))
     back = bool(rule("zones.back").search(text))
-    if flank and (front or back) and (not _FLANKPARTS.search(text) or _CORNERED.search(text)):
+    if flank and (front or back) and (not rule("zones.flankparts").search(text) or rule("zones.cornered").search(text)):
         return f"front/{flank}" if front else f"back/{flank}"
-    if _CORNER.search(text) and (front or back) and not flank:
+    if rule("zones.corner").search(text) and (front or back) and not flank:
         return "front/left/right" if front else "back/left/right"
     return flank or ("front" if front else "back" if back else None)
 
@@ -46,10 +37,10 @@ def plain(told: Statement, who: Roster) -> str:
     text = rule("zones.trailer_of_number").sub(r"\1", text)
     text = rule("zones.of_trailer").sub(r"of \1", text)
     text = rule("zones.opened_door").sub(r"\g<told>the \g<door> of \g<v>", text)
-    text = _POSSESSIVE.sub(lambda m: f"the {m['area']} of {m['v']}", text)
+    text = rule("zones.possessive").sub(lambda m: f"the {m['area']} of {m['v']}", text)
     text = rule("zones.bare_possessive").sub(r"the \g<area> of \g<v>", text)
     text = rule("zones.area_of_the_vehicle").sub(_of_subject(told), text)
-    return _ITS_AREA.sub(lambda m: _its(m, told, text, who), text)
+    return rule("zones.its_area").sub(lambda m: _its(m, told, text, who), text)
 
 
 def _of_subject(told: Statement) -> str:

@@ -21,12 +21,9 @@ class Conditions(NamedTuple):
     """Where each was read."""
 
 
-_NEGATED = rule("conditions.negated")
 _LESS = ("interview", "injury", "police", "restraint", "towing", "health")
 """Roles of sentences that are asked where the crash's own tell nothing; they must tell two of the three."""
 _ROLES = ("opening", "road", "conditions", "approach", "impact", "other", "rest", "avoidance")
-
-
 _KINDS = ("light", "weather", "surface")
 
 
@@ -51,6 +48,6 @@ def _first(role: str, said: list[Sentence]) -> tuple[Any, Cue] | None:
     for rule_ in of_role(role):
         for sentence in said:
             for m in rule_.finditer(sentence.text):
-                if not _NEGATED.search(sentence.text[: m.start()]):
+                if not rule("conditions.negated").search(sentence.text[: m.start()]):
                     return rule_.yields[role], Cue(sentence.number, m[0], rule_.id)
     return None

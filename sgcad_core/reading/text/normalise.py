@@ -19,7 +19,6 @@ from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, Role, role_of
 from sgcad_core.reading.text.traced_text import Traced, joined
 
 __all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalised", "normalize", "sentences", "split_sentences"]
-
 NUMBERS: dict[str, int] = values("number_word")
 MOST_READ = 16_000
 """Characters of a report that are read, four times the longest known: the one limit that keeps any text bearable."""
@@ -52,16 +51,8 @@ _CHARACTERS = str.maketrans({
     "\u00c2": " ", "\u00c3": " ",  # what is left where a file was read in another encoding twice
 })  # fmt: skip
 
-_TYPO = rule("text.typo")
-
 
 # ------------------------------------------------------------------ mentions, units, directions
-
-_LETTERED = rule("text.lettered")
-_SPOKEN = rule("text.spoken_speed")
-_VEHICLE_WORD = rule("text.vehicle_word")
-_VEHICLE_CASE = rule("text.vehicle_case")
-_COUNTED_LANE = rule("text.counted_lane")
 
 
 def normalize(text: str) -> str:
@@ -94,15 +85,15 @@ def _paragraph(block: Traced) -> Traced:
 
 
 def _spell(text: Traced) -> Traced:
-    text = _spaces(text).sub(_TYPO, _mend_typo)
+    text = _spaces(text).sub(rule("text.typo"), _mend_typo)
     for spelling in of_role("spelling"):
         text = text.sub(spelling, spelling.yields["to"])
-    text = text.sub(_SPOKEN, lambda m: str(values("spoken_speed")[m.group().lower()]))
+    text = text.sub(rule("text.spoken_speed"), lambda m: str(values("spoken_speed")[m.group().lower()]))
     text = text.sub(rule("text.first_vehicle"), "V1")
-    text = text.sub(_LETTERED, lambda m: f"V{ord(m.group(1)) - ord('A') + 1}")
+    text = text.sub(rule("text.lettered"), lambda m: f"V{ord(m.group(1)) - ord('A') + 1}")
     text = text.sub(rule("text.lettered_driver"), lambda m: f"the driver of V{ord(m.group(1)) - ord('A') + 1}")
-    text = text.sub(_VEHICLE_WORD, lambda m: f"V{NUMBERS[m.group(1).lower()]}")
-    text = text.sub(_VEHICLE_CASE, r"V\1").sub(_COUNTED_LANE, _mend_lanes)
+    text = text.sub(rule("text.vehicle_word"), lambda m: f"V{NUMBERS[m.group(1).lower()]}")
+    text = text.sub(rule("text.vehicle_case"), r"V\1").sub(rule("text.counted_lane"), _mend_lanes)
     return _spaces(text)
 
 
@@ -127,8 +118,6 @@ def _mend_lanes(match: re.Match[str]) -> str:
 
 
 # ------------------------------------------------------------------ sentences
-_ABBREVIATION = rule("text.abbreviation")
-_END = rule("text.end")
 
 
 def sentences(text: str) -> tuple[Sentence, ...]:
@@ -149,11 +138,11 @@ def split_sentences(text: Traced) -> tuple[Sentence, ...]:
 
 def _split(block: Traced) -> list[Traced]:
     pieces: list[Traced] = []
-    for part in block.split(_END):
+    for part in block.split(rule("text.end")):
         last = pieces[-1].text[-_TAIL:] if pieces else ""
         ended = last.lower().endswith((" dr.", " st.")) or rule("text.road_closed").search(last)
         titled = rule("text.title").search(last)
-        joins = pieces and _ABBREVIATION.search(last) and (titled or not ended)
+        joins = pieces and rule("text.abbreviation").search(last) and (titled or not ended)
         if pieces and joins:
             pieces[-1] = joined([pieces[-1], part], " ")
         else:

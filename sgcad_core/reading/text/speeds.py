@@ -30,20 +30,15 @@ class Speed(NamedTuple):
     rule: str
 
 
-_SPEED = rule("surroundings.speed")
-_KMPH = rule("surroundings.kmph")
 _BARE = rule("speeds.bare")
-_LIMIT = rule("surroundings.limit")
-_DRIVEN = rule("speeds.driven")
-_VEHICLE = rule("common.vehicle")
 
 
 def speeds(text: str) -> Iterator[Speed]:
     """Speeds that are no limits, those in mph first, then those in km/h, then numbers without a unit."""
-    of_limit = bool(_LIMIT.search(text))
-    for pattern, factor in ((_SPEED, 1.0), (_KMPH, MILES), (_BARE, 1.0)):
+    of_limit = bool(rule("surroundings.limit").search(text))
+    for pattern, factor in ((rule("surroundings.speed"), 1.0), (rule("surroundings.kmph"), MILES), (_BARE, 1.0)):
         for m in pattern.finditer(text):
-            if not of_limit or pattern is _BARE or _DRIVEN.search(text[: m.start()]):
+            if not of_limit or pattern is _BARE or rule("speeds.driven").search(text[: m.start()]):
                 yield Speed(_mph(m, factor), m.start("a"), m.end(), m.group(), pattern.id)
 
 
@@ -71,7 +66,7 @@ def read_speeds_beside(motions: Mapping[str, Motion], told: Sequence[Statement])
 
 def _owned(told: Statement) -> Iterator[tuple[str, Speed]]:
     """Speeds of a sentence with the vehicle that each is of, where that is plain."""
-    named = list(_VEHICLE.finditer(told.text))
+    named = list(rule("common.vehicle").finditer(told.text))
     for speed in speeds(told.text):
         if found := rule("speeds.for_vehicle").match(told.text, speed.end):
             yield found["vehicle"], speed
