@@ -10,13 +10,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.reading.actors.pedestrians_objects import OtherFacts, others
-from sgcad_core.reading.actors.vehicles import Identity
-from sgcad_core.reading.actors.walkers import Walk, side_facing
-from sgcad_core.reading.contacts.near_crash import NearFacts
+from sgcad_core.reading.actors.vehicles import VehicleDescription
+from sgcad_core.reading.actors.walkers import WalkDirection, side_facing
+from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.inference.gaps import Gap
-from sgcad_core.reading.inference.inference_state import AREAS, Draft, Settled, end_of
+from sgcad_core.reading.inference.inference_state import AREAS, CrashInferred, CrashTold, end_of
 from sgcad_core.reading.motion.maneuvers import meant_turn, started_from_stop
-from sgcad_core.reading.motion.motion_record import Access, Motion
+from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
 from sgcad_core.reading.text.conditions import Conditions
 from sgcad_core.records.course import Courses, ImpactTold
 from sgcad_core.records.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
@@ -96,7 +96,7 @@ class CrashFacts:
     """Evasion, spin and rest by vehicle, of those of which anything is told."""
     impacts: tuple[ImpactTold, ...] = ()
     """Contacts behind the first one with things, and of the same pair once more, in order."""
-    near_crash: NearFacts | None = None
+    near_crash: NearCrashFacts | None = None
     """Where set, nobody touches: the first of `contacts` is the one that was avoided."""
     oriented: bool = False
     """Whether any heading is told: if not, all headings are right only relative to one another."""
@@ -116,46 +116,52 @@ _SURFACE: dict[Weather | None, Surface] = {"rain": "wet", "snow": "snow", "sleet
 """Surface where only the weather is told."""
 
 
-def _vehicle(v: Identity, motion: Motion, settled: Settled) -> VehicleFacts:
+def _vehicle(v: VehicleDescription, motion: VehicleMotion, inferred: CrashInferred) -> VehicleFacts:
     """One vehicle's facts put together."""
     meant = meant_turn(motion)
-    from_stop = started_from_stop(motion, settled.maneuvers[v.id])
-    over = from_stop and settled.speeds.get(v.id, 0) > FROM_STOP_MPH and _told_before_stop(motion, settled, v.id)
+    from_stop = started_from_stop(motion, inferred.maneuvers[v.id])
+    over = from_stop and inferred.speeds.get(v.id, 0) > FROM_STOP_MPH and _told_before_stop(motion, inferred, v.id)
     return VehicleFacts(
         id=v.id, kind=v.kind, year=v.year, make=v.make, model=v.model,
-        heading=settled.headings.get(v.id), heading_stated=v.id in settled.stated, exit_heading=settled.exits.get(v.id),
-        maneuver=settled.maneuvers[v.id], maneuver_stated=v.id in settled.told_maneuvers,
-        lane=motion.lane, lane_word=motion.lane_word, speed_mph=None if over else settled.speeds.get(v.id),
+        heading=inferred.headings.get(v.id), heading_stated=v.id in inferred.stated,
+        exit_heading=inferred.exits.get(v.id), maneuver=inferred.maneuvers[v.id],
+        maneuver_stated=v.id in inferred.told_maneuvers,
+        lane=motion.lane, lane_word=motion.lane_word, speed_mph=None if over else inferred.speeds.get(v.id),
         trailer=v.trailer, origin=motion.origin, target=motion.target,
         meant=meant.maneuver if meant else None, from_stop=from_stop,
-        faces=_faces(motion, settled.headings.get(v.id)),
+        faces=_faces(motion, inferred.headings.get(v.id)),
     )  # fmt: skip
 
 
-def _faces(motion: Motion, heading: Compass | None) -> bool:
+def _faces(motion: VehicleMotion, heading: Compass | None) -> bool:
     """Whether a heading is where a vehicle faces: it is told so, or an account in order has it drive there before."""
     return f"faces {heading}" in motion.sources or (motion.ordered and f"backs {heading}" not in motion.sources)
 
 
-def _told_before_stop(motion: Motion, settled: Settled, vehicle: str) -> bool:
+def _told_before_stop(motion: VehicleMotion, inferred: CrashInferred, vehicle: str) -> bool:
     """Whether the told speed is that of the approach to a stop from which the vehicle then started."""
-    cue = settled.sources.get(f"{vehicle} speed")
-    stops = [d.number for d in motion.deeds if d.kind == "stopped"]
-    return cue is not None and bool(stops) and cue.number <= max(stops)
+    source = inferred.sources.get(f"{vehicle} speed")
+    stops = [d.number for d in motion.cues if d.kind == "stopped"]
+    return source is not None and bool(stops) and source.number <= max(stops)
 
 
-def _without_vehicle(draft: Draft, settled: Settled, beside: tuple[OtherFacts, ...]) -> tuple[ContactFacts, ...]:
+def _without_vehicle(
+    crash_told: CrashTold, inferred: CrashInferred, beside: tuple[OtherFacts, ...]
+) -> tuple[ContactFacts, ...]:
     """What vehicles hit that has no number: objects with the front unless told, people on the side from which they are
     met as they go, their left one where that is not told."""
     ids = {o.word: o for o in beside}
     found: dict[str, ContactFacts] = {}
-    for blow in draft.blows:
-        other = ids.get(blow.other)
+    for mention in crash_told.contact_mentions:
+        other = ids.get(mention.other)
         if other and other.id not in found:
-            area = end_of(blow.actor_area) or "front"
-            faces = side_facing(draft.walks.get(blow.other, Walk()), settled.headings.get(blow.actor)) or "left"
+            area = end_of(mention.actor_area) or "front"
+            faces = (
+                side_facing(crash_told.walks.get(mention.other, WalkDirection()), inferred.headings.get(mention.actor))
+                or "left"
+            )
             side: Area = "front" if other.kind == "object" else faces
-            found[other.id] = ContactFacts(blow.actor, other.id, area, side, False)
+            found[other.id] = ContactFacts(mention.actor, other.id, area, side, False)
     return tuple(found.values())
 
 
@@ -179,12 +185,14 @@ def _subject_first(
     return vehicles, (mine, *(c for c in contacts if c is not mine))
 
 
-def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
-    """The crash that was read (`draft`) and what follows from it. A text that names no vehicle gives none."""
-    vehicles = tuple(_vehicle(v, draft.motions[v.id], settled) for v in draft.who.vehicles)
-    beside = others(draft.blows, draft.who.ids, sum(v.beside for v in draft.who.vehicles))
-    contacts = tuple(ContactFacts(*c) for c in settled.contacts) or _without_vehicle(draft, settled, beside)
-    if draft.who.counted:
+def crash_of(crash_told: CrashTold, inferred: CrashInferred, sky: Conditions) -> CrashFacts:
+    """The crash that was read (`crash_told`) and what follows from it. A text that names no vehicle gives none."""
+    vehicles = tuple(_vehicle(v, crash_told.motions[v.id], inferred) for v in crash_told.roster.vehicles)
+    beside = others(
+        crash_told.contact_mentions, crash_told.roster.ids, sum(v.beside for v in crash_told.roster.vehicles)
+    )
+    contacts = tuple(ContactFacts(*c) for c in inferred.contacts) or _without_vehicle(crash_told, inferred, beside)
+    if crash_told.roster.counted:
         vehicles, contacts = _subject_first(vehicles, contacts)
     return CrashFacts(
         vehicles,
@@ -193,17 +201,17 @@ def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
         sky.light,
         sky.weather,
         sky.surface or _SURFACE.get(sky.weather),
-        near_crash=_near(draft) if contacts else None,
-        courses=draft.course.courses,
-        impacts=tuple(read.impact for read in draft.impacts),
-        oriented=bool(settled.stated),
-        unnumbered=draft.who.counted,
+        near_crash=_near(crash_told) if contacts else None,
+        courses=crash_told.course.courses,
+        impacts=tuple(read.impact for read in crash_told.impacts),
+        oriented=bool(inferred.stated),
+        unnumbered=crash_told.roster.counted,
     )
 
 
-def _near(draft: Draft) -> NearFacts | None:
-    near = draft.near
+def _near(crash_told: CrashTold) -> NearCrashFacts | None:
+    near = crash_told.near
     if near is None:
         return None
     evasions = tuple((e.vehicle, e.maneuver) for e in near.evasions)
-    return NearFacts(evasions, near.clearance_m, bool(near.blows))
+    return NearCrashFacts(evasions, near.clearance_m, bool(near.contact_mentions))

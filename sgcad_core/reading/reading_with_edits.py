@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from sgcad_core.reading.actors.pedestrians_objects import OtherFacts
-from sgcad_core.reading.contacts.near_crash import NearFacts
+from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.reading.inference.inference_state import AREAS
 from sgcad_core.reading.motion.absolute_headings import turned_vehicle
@@ -149,11 +149,11 @@ def _contacts(crash: CrashFacts, given: Given) -> CrashFacts:
     return replace(crash, contacts=(*met, *beside), near_crash=_near(crash, given, bool(met)), gap=gap)
 
 
-def _near(crash: CrashFacts, given: Given, met: bool) -> NearFacts | None:
+def _near(crash: CrashFacts, given: Given, met: bool) -> NearCrashFacts | None:
     avoided = given.get("near_crash", crash.near_crash is not None)
     if not (avoided and met):
         return None
-    near = crash.near_crash or NearFacts()
+    near = crash.near_crash or NearCrashFacts()
     clearance: Any = given.get("near_crash.clearance_m", near.clearance_m)
     return replace(near, clearance_m=clearance, stated=near.stated or "near_crash" in given)
 

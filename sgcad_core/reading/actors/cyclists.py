@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from sgcad_core.reading.actors.references import Numbering, numbered
-from sgcad_core.reading.actors.unnumbered_actors import Actor, Cast, Phrase
+from sgcad_core.reading.actors.unnumbered_actors import Actor, NamedActors, Phrase
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.text.traced_text import Traced
+from sgcad_core.reading.text.traced_text import TracedText
 
 
-def number_cyclists(text: Traced) -> Traced:
+def number_cyclists(text: TracedText) -> TracedText:
     """A text that numbers V1 alone with everybody on a bicycle numbered from V2 on; all others stay as they are.
 
     Of several numbered vehicles the words alone do not tell whom a cyclist met: those texts stay as well.
@@ -16,7 +16,7 @@ def number_cyclists(text: Traced) -> Traced:
     if {m.group() for m in rule("common.vehicle").finditer(text.text)} != {"V1"}:
         return text
     v1 = Actor(1, "vehicle", set(), subject=True)
-    return numbered(text, _Cyclists(Cast([v1], automated=True)))
+    return numbered(text, _Cyclists(NamedActors([v1], automated=True)))
 
 
 class _Cyclists(Numbering):

@@ -37,19 +37,19 @@ class Drivers(NamedTuple):
         return self.called.get(match["who"].lower(), match.group())
 
 
-NOBODY = Drivers({})
+NO_DRIVERS = Drivers({})
 
 
-def drivers(told: Iterable[str], who: Roster) -> Drivers:
+def drivers(told: Iterable[str], roster: Roster) -> Drivers:
     """Who drives what, of sentences whose vehicles are numbers; parties that are said to drive two are left out."""
     meant: dict[str, set[str]] = {}
     for text in told:
         for name, vehicle in _named(text):
             meant.setdefault(name, set()).add(vehicle)
-    called = {name: next(iter(ids)) for name, ids in meant.items() if len(ids) == 1 and ids <= set(who.ids)}
+    called = {name: next(iter(ids)) for name, ids in meant.items() if len(ids) == 1 and ids <= set(roster.ids)}
     for pair in _AGAINST:
         for one, other in (pair, pair[::-1]):
-            if one in called and other not in meant and (rest := who.other(called[one])):
+            if one in called and other not in meant and (rest := roster.other(called[one])):
                 called[other] = rest
     return Drivers(called)
 

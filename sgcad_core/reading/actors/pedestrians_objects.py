@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from sgcad_core.reading.contacts.contact_telling import Blow
+from sgcad_core.reading.contacts.contact_telling import ContactMention
 from sgcad_core.reading.language import of_role
 from sgcad_core.records.specs import ActorKind
 
@@ -22,12 +22,14 @@ class OtherFacts:
     word: str
 
 
-def others(blows: Iterable[Blow], vehicles: tuple[str, ...], parked: int = 0) -> tuple[OtherFacts, ...]:
+def others(
+    contact_mentions: Iterable[ContactMention], vehicles: tuple[str, ...], parked: int = 0
+) -> tuple[OtherFacts, ...]:
     """Everybody and everything that is hit and has no number, each word once, in order; `parked`: O ids taken."""
     words: list[str] = []
-    for blow in blows:
-        if blow.other not in vehicles and blow.other not in words and blow.role not in ("interview", "injury"):
-            words.append(blow.other)
+    for mention in contact_mentions:
+        if mention.other not in vehicles and mention.other not in words and mention.role not in ("interview", "injury"):
+            words.append(mention.other)
     found: list[OtherFacts] = []
     for word in words:
         letter, kind = _kind(word)

@@ -12,9 +12,9 @@ import re
 from dataclasses import dataclass
 
 from sgcad_core.reading.actors.makes import BODY_WORDS
-from sgcad_core.reading.actors.unnumbered_actors import TRUCK_PARTS, Actor, Cast, Phrase
+from sgcad_core.reading.actors.unnumbered_actors import TRUCK_PARTS, Actor, NamedActors, Phrase
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.text.traced_text import Traced, joined
+from sgcad_core.reading.text.traced_text import TracedText, joined
 
 _PHRASE = rule("references.phrase")
 _OWNERS = ("his", "her", "their")
@@ -23,30 +23,30 @@ _NEAR = 40
 """Characters before a phrase in which a word may say that it is of a stranger."""
 
 
-def numbers_somebody(text: str) -> bool:
+def has_actor_numbers(text: str) -> bool:
     """Whether a normalized report numbers anybody."""
     return bool(rule("common.vehicle").search(text))
 
 
-def number_actors(text: Traced) -> Traced:
+def number_actors(text: TracedText) -> TracedText:
     """The normalized text with everybody named by number; unchanged if there is any number."""
-    if numbers_somebody(text.text):
+    if has_actor_numbers(text.text):
         return text
     automated = _automated(text.text)
     for name in _companies(text.text):
         text = text.sub(rule("references.short_name").given(name=re.escape(name)), rf"\1 {name} AV")
-    cast = Cast([Actor(1, "vehicle", set(), subject=True)] if automated else [], automated)
+    cast = NamedActors([Actor(1, "vehicle", set(), subject=True)] if automated else [], automated)
     return numbered(text, Numbering(cast))
 
 
-def numbered(text: Traced, numbering: Numbering) -> Traced:
+def numbered(text: TracedText, numbering: Numbering) -> TracedText:
     """The text with a number for everybody whom the numbering takes, block by block."""
     blocks = [_numbered(block, numbering) for block in text.split_at("\n\n")]
     return joined(blocks, "\n\n")
 
 
-def _numbered(block: Traced, numbering: Numbering) -> Traced:
-    pieces: list[Traced] = []
+def _numbered(block: TracedText, numbering: Numbering) -> TracedText:
+    pieces: list[TracedText] = []
     at = 0
     for end in [m.end() for m in rule("text.end").finditer(block.text)] + [len(block.text)]:
         piece, at = block.cut(at, end), end
@@ -71,7 +71,7 @@ def _companies(text: str) -> list[str]:
 class Numbering:
     """Fills in numbers, phrase by phrase in the order of the text."""
 
-    cast: Cast
+    cast: NamedActors
     announcing: bool = False
     at: int = 0
     last: tuple[re.Match[str], Actor] | None = None

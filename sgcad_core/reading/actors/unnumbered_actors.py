@@ -114,7 +114,7 @@ def _is_car(head: str) -> bool:
 
 
 @dataclass
-class Cast:
+class NamedActors:
     """Everybody named so far."""
 
     actors: list[Actor] = field(default_factory=list)

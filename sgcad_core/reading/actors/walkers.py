@@ -11,7 +11,7 @@ from sgcad_core.reading.text.compass import OPPOSITE_HAND, between, compass_of, 
 from sgcad_core.records.specs import Area, Compass
 
 
-class Walk(NamedTuple):
+class WalkDirection(NamedTuple):
     """How one goes: from the driver's left or right, or in a direction of the compass; None: not told."""
 
     hand: str | None = None
@@ -31,29 +31,29 @@ def with_people(told: Iterable[Statement]) -> Iterator[Statement]:
         yield t
 
 
-def walk_of(word: str, told: Iterable[Statement]) -> Walk:
+def walk_of(word: str, told: Iterable[Statement]) -> WalkDirection:
     """The first that the sentences which name somebody tell of his way."""
     for t in told:
         if t.role not in ("codes", "factors") and word in t.text:
             walk = _told(t.text[t.text.index(word) :])
-            if walk != Walk():
+            if walk != WalkDirection():
                 return walk
-    return Walk()
+    return WalkDirection()
 
 
-def _told(text: str) -> Walk:
+def _told(text: str) -> WalkDirection:
     if across := rule("walkers.across").search(text):
-        return Walk(way=compass_of(across["way"]))
+        return WalkDirection(way=compass_of(across["way"]))
     if hand := rule("walkers.from_hand").search(text):
-        return Walk(hand=hand["hand"].lower())
+        return WalkDirection(hand=hand["hand"].lower())
     if goes := rule("walkers.walks").search(text) or rule("walkers.goes").search(text):
-        return Walk(way=compass_of(goes["way"]))
+        return WalkDirection(way=compass_of(goes["way"]))
     side = rule("walkers.from_side").search(text)
     came = compass_of(side["way"]) if side else None
-    return Walk(way=turned(came, 180) if came else None)
+    return WalkDirection(way=turned(came, 180) if came else None)
 
 
-def side_facing(walk: Walk, driver: Compass | None) -> Area | None:
+def side_facing(walk: WalkDirection, driver: Compass | None) -> Area | None:
     """The side of one who walks that faces a driver on a heading; None where neither hand nor heading tells it."""
     if walk.hand:
         return OPPOSITE_HAND[walk.hand]

@@ -12,7 +12,7 @@ from sgcad_core.reading.behavior.exit_assignment import Placed, assign, square_r
 from sgcad_core.reading.behavior.gore_actors import in_gore
 from sgcad_core.reading.behavior.lane_choice import lane_of
 from sgcad_core.reading.behavior.roadside_objects import with_roadside
-from sgcad_core.reading.contacts.near_crash import NearFacts
+from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.crash_facts import FROM_STOP_MPH, ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.reading.layout.road_ways import Way
 from sgcad_core.records.specs import (  # fmt: skip
@@ -51,9 +51,9 @@ def behavior_of_facts(facts: CrashFacts, spec: RoadSpec) -> BehaviorSpec:
     near = _near_crash(facts, contacts)
     actors = in_gore(actors, [_contact(c) for c in contacts], facts.gore, spec)
     met = [] if near else [_contact(c) for c in contacts[:_MOST_CONTACTS]]
-    cast, blows = with_roadside(actors, met, facts, (_MOST_ACTORS, _MOST_CONTACTS))
+    everyone, joined = with_roadside(actors, met, facts, (_MOST_ACTORS, _MOST_CONTACTS))
     return BehaviorSpec(
-        actors=cast, contacts=blows,
+        actors=everyone, contacts=joined,
         light=facts.light, weather=facts.weather, surface=facts.surface, near_crash=near,
     )  # fmt: skip
 
@@ -72,7 +72,7 @@ def as_read(behavior: BehaviorSpec, facts: CrashFacts) -> BehaviorSpec:
     return behavior.model_copy(update={"contacts": (), "near_crash": near_crash_of(near, behavior.contacts[0])})
 
 
-def near_crash_of(near: NearFacts, conflict: Contact) -> NearCrash:
+def near_crash_of(near: NearCrashFacts, conflict: Contact) -> NearCrash:
     """A told near crash on a conflict."""
     pair = (conflict.striker, conflict.struck)
     evasions = tuple(Evasion(actor=who, maneuver=how) for who, how in near.evasions if who in pair)

@@ -14,7 +14,7 @@ from sgcad_core.reading.language import rule
 from sgcad_core.reading.text.area_phrases import Zone, area_of
 
 
-class Touch(NamedTuple):
+class NounContact(NamedTuple):
     """Two vehicles and the areas that met; `by` the other: whether the first one was struck."""
 
     first: str
@@ -30,41 +30,41 @@ _PUSHES = (("v1", "v2", "a2"), ("v3", "v4", "a4"), ("v5", "v6", "a6"))
 _NOTHING = rule("contact_nouns.nothing")
 
 
-def touches(text: str) -> Iterator[Touch]:
+def touches(text: str) -> Iterator[NounContact]:
     """Every contact that nouns tell in a sentence, in the order of their certainty."""
     told = (says.BETWEEN, says.BOTH_PARTS, rule("contact_nouns.named"), rule("contact_nouns.caused"))
     for m in (m for pattern in told for m in pattern.finditer(text)):
         if not _NOTHING.search(text[: m.start()]):
             front = "front" if rule("contact_nouns.head_on").match(text[m.end() :]) else None
-            yield Touch(m["v1"], m["v2"], _maybe(m["a1"]) or front, _maybe(m["a2"]) or front, "between")
+            yield NounContact(m["v1"], m["v2"], _maybe(m["a1"]) or front, _maybe(m["a2"]) or front, "between")
     for m in rule("contact_nouns.between_thing").finditer(text):
         if not _NOTHING.search(text[: m.start()]):
-            yield Touch(m["v"] or m["v2"], m["object"].lower(), _maybe(m["area"] or m["area2"]), None, "between")
+            yield NounContact(m["v"] or m["v2"], m["object"].lower(), _maybe(m["area"] or m["area2"]), None, "between")
     for m in says.PUSHED.finditer(text):
         a, b, area = next((m[v], m[w], m[z]) for v, w, z in _PUSHES if m[v])
-        yield Touch(a, b, "front", _maybe(area) or "back", "pushed")
+        yield NounContact(a, b, "front", _maybe(area) or "back", "pushed")
     for m in rule("contact_nouns.received").finditer(text):
-        yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "received", True)
+        yield NounContact(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "received", True)
     for m in rule("contact_nouns.took").finditer(text):
-        yield Touch(
+        yield NounContact(
             m["v1"], m["v2"], _maybe(m["a0"]) or _maybe(m["a1"]) or area_of(m["how"]), _maybe(m["a2"]), "took", True
         )
 
 
-def together(text: str) -> Iterator[Touch]:
+def together(text: str) -> Iterator[NounContact]:
     """ "... came together, the front of V1 to the left side of V2": no verb, so only where no verb tells more."""
     for m in rule("contact_nouns.together").finditer(text):
         if not _NOTHING.search(text[: m.start()]):
-            yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "together")
+            yield NounContact(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "together")
     for m in rule("contact_nouns.into").finditer(text):
         if not _NOTHING.search(text[: m.start()]):
-            yield Touch(m["v1"], m["v2"], "front" if m["how"] else None, _maybe(m["a2"]), "into")
+            yield NounContact(m["v1"], m["v2"], "front" if m["how"] else None, _maybe(m["a2"]), "into")
 
 
-def involved(text: str) -> Iterator[Touch]:
+def involved(text: str) -> Iterator[NounContact]:
     """ "V1 was in a collision involving V2": of use only where nothing tells how."""
     for m in rule("contact_nouns.involved").finditer(text):
-        yield Touch(m["v1"], m["v2"], None, None, "involved")
+        yield NounContact(m["v1"], m["v2"], None, None, "involved")
 
 
 def door_of(actor: str, before: str, scope: str) -> str | None:

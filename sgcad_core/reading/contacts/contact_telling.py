@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.area_phrases import Zone
 from sgcad_core.reading.text.sentence_roles import HIT, Role
 
 
 @dataclass(frozen=True)
-class Blow:
+class ContactMention:
     """A contact as told: `other` is a vehicle id or the object's word; an area not told is None."""
 
     actor: str
@@ -30,17 +30,19 @@ class Blow:
     """No more than who collided with whom, wherever in the text: it says nothing of when."""
 
     @property
-    def cue(self) -> Cue:
+    def source(self) -> Source:
         """Where it was read."""
-        return Cue(self.number, "" if self.noun else self.words, f"contact_nouns.{self.words}" if self.noun else HIT.id)
+        return Source(
+            self.number, "" if self.noun else self.words, f"contact_nouns.{self.words}" if self.noun else HIT.id
+        )
 
 
-def with_areas(blow: Blow, retold: Iterable[Blow]) -> Blow:
+def with_areas(mention: ContactMention, retold: Iterable[ContactMention]) -> ContactMention:
     """The blow with areas that it lacks taken from other tellings of the same pair."""
     for other in retold:
-        if {other.actor, other.other} != {blow.actor, blow.other}:
+        if {other.actor, other.other} != {mention.actor, mention.other}:
             continue
-        same = other.actor == blow.actor
+        same = other.actor == mention.actor
         mine, theirs = (other.actor_area, other.other_area) if same else (other.other_area, other.actor_area)
-        blow = replace(blow, actor_area=blow.actor_area or mine, other_area=blow.other_area or theirs)
-    return blow
+        mention = replace(mention, actor_area=mention.actor_area or mine, other_area=mention.other_area or theirs)
+    return mention

@@ -14,7 +14,7 @@ from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.actors.walkers import with_people
 from sgcad_core.reading.contacts import contact_words as says
 from sgcad_core.reading.contacts.contact_nouns import (
-    Touch,
+    NounContact,
     door_of,
     involved,
     is_noun,
@@ -24,18 +24,18 @@ from sgcad_core.reading.contacts.contact_nouns import (
     together,
     touches,
 )
-from sgcad_core.reading.contacts.contact_telling import Blow
+from sgcad_core.reading.contacts.contact_telling import ContactMention
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement, subject_starts
 from sgcad_core.reading.text.area_phrases import Zone, area_by, area_if_told, area_of, plain
 from sgcad_core.reading.text.sentence_roles import HIT
 
 
-def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
+def contact_mentions(told: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
     """Every contact told, in order: the crash's own sentences first, other witnesses behind them."""
-    crash: list[Blow] = []
-    retold: list[Blow] = []
-    told = tuple(told if who.counted else with_people(told))
+    crash: list[ContactMention] = []
+    retold: list[ContactMention] = []
+    told = tuple(told if roster.counted else with_people(told))
     for t in told:
         if t.role in ("codes", "factors", "police", "health", "formal"):
             continue
@@ -44,68 +44,74 @@ def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
             if t.role in ("impact", "approach", "avoidance", "rest", "opening", "road", "conditions", "other")
             else retold
         )
-        into += _sentence(t, who)
-    first = min((b.number for b in crash if b.other in who.ids), default=0)
-    early = [b for b in retold if b.number < first and b.other in who.ids]
+        into += _sentence(t, roster)
+    first = min((b.number for b in crash if b.other in roster.ids), default=0)
+    early = [b for b in retold if b.number < first and b.other in roster.ids]
     late = [b for b in retold if b not in early]
-    return (*early, *crash, *late) or _only_named(told, who)
+    return (*early, *crash, *late) or _only_named(told, roster)
 
 
-def _only_named(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
+def _only_named(told: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
     """Contacts of which a report says no more than who collided with whom."""
-    named = ((t, touch) for t in told for touch in involved(plain(t, who)))
-    found = (Blow(m.first, m.second, None, None, t.number, t.role, words=m.words, mutual=True, noun=True, summary=True)
-             for t, m in named)  # fmt: skip
-    return tuple(b for b in found if {b.actor, b.other} <= set(who.ids) and b.actor != b.other)
+    found = (
+        replace(_from_nouns(pair, t), mutual=True, summary=True) for t in told for pair in involved(plain(t, roster))
+    )
+    return tuple(b for b in found if {b.actor, b.other} <= set(roster.ids) and b.actor != b.other)
 
 
-def _sentence(told: Statement, who: Roster) -> list[Blow]:
-    text = plain(told, who)
-    found: list[Blow] = []
-    starts = subject_starts(told._replace(text=text), who)
+def _sentence(told: Statement, roster: Roster) -> list[ContactMention]:
+    text = plain(told, roster)
+    found: list[ContactMention] = []
+    starts = subject_starts(told._replace(text=text), roster)
     for m in HIT.finditer(text):
         if any(p.start() < m.start() <= p.end() for p in says.BOTH_PARTS.finditer(text)):
             continue
-        blow = _blow(told, text, m, starts, who)
-        if blow:
-            found.append(blow)
-    found += [_touch(t, told) for t in touches(text)]
-    found = [_with_striker(b, text) for b in found] or _unnamed_pair(told, text, who)
+        mention = _contact_mention(told, text, m, starts, roster)
+        if mention:
+            found.append(mention)
+    found += [_from_nouns(t, told) for t in touches(text)]
+    found = [_with_striker(b, text) for b in found] or _unnamed_pair(told, text, roster)
     told_by_verbs = {frozenset((b.actor, b.other)) for b in found}
-    found += [_touch(t, told) for t in together(text) if frozenset((t.first, t.second)) not in told_by_verbs]
-    return [b for b in found if b.actor in who.ids and b.actor != b.other]
+    found += [_from_nouns(t, told) for t in together(text) if frozenset((t.first, t.second)) not in told_by_verbs]
+    return [b for b in found if b.actor in roster.ids and b.actor != b.other]
 
 
-def _with_striker(blow: Blow, text: str) -> Blow:
+def _with_striker(mention: ContactMention, text: str) -> ContactMention:
     """A collision of both with the striker first, where the sentence tells who struck."""
-    said = rule("contact_nouns.striker").search(text) if blow.mutual or blow.noun else None
-    if not said or said["v"] != blow.other:
-        return blow
-    return replace(blow, actor=blow.other, other=blow.actor, actor_area=blow.other_area, other_area=blow.actor_area)
+    said = rule("contact_nouns.striker").search(text) if mention.mutual or mention.noun else None
+    if not said or said["v"] != mention.other:
+        return mention
+    return replace(
+        mention, actor=mention.other, other=mention.actor, actor_area=mention.other_area, other_area=mention.actor_area
+    )
 
 
-def _unnamed_pair(told: Statement, text: str, who: Roster) -> list[Blow]:
+def _unnamed_pair(told: Statement, text: str, roster: Roster) -> list[ContactMention]:
     """ "Front met front.", where there are but two."""
-    pair = rule("contact_nouns.bare_pair").search(text) if len(who.ids) == 2 and not MENTION.search(text) else None
-    if not pair or who.counted:
+    pair = rule("contact_nouns.bare_pair").search(text) if len(roster.ids) == 2 and not MENTION.search(text) else None
+    if not pair or roster.counted:
         return []
-    (one, other), mine, theirs = who.ids, area_of(pair["a1"]), area_of(pair["a2"])
-    return [Blow(one, other, mine, theirs, told.number, told.role, words="bare_pair", mutual=True, noun=True)]
+    (one, other), mine, theirs = roster.ids, area_of(pair["a1"]), area_of(pair["a2"])
+    return [ContactMention(one, other, mine, theirs, told.number, told.role, words="bare_pair", mutual=True, noun=True)]
 
 
-def _touch(t: Touch, told: Statement) -> Blow:
+def _from_nouns(t: NounContact, told: Statement) -> ContactMention:
     if t.by:
-        return Blow(t.second, t.first, t.second_area, t.first_area, told.number, told.role, True, t.words, noun=True)
-    return Blow(t.first, t.second, t.first_area, t.second_area, told.number, told.role, words=t.words, noun=True)
+        return ContactMention(
+            t.second, t.first, t.second_area, t.first_area, told.number, told.role, True, t.words, noun=True
+        )
+    return ContactMention(
+        t.first, t.second, t.first_area, t.second_area, told.number, told.role, words=t.words, noun=True
+    )
 
 
-def _blow(
-    told: Statement, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], who: Roster
-) -> Blow | None:
+def _contact_mention(
+    told: Statement, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], roster: Roster
+) -> ContactMention | None:
     before, behind = text[: m.start()], text[m.end() :]
     passive = bool(says.PASSIVE.search(before)) and not rule("contact.made_contact").match(m.group())
     passive = passive or bool(rule("contact.reduced").match(m.group() + behind))
-    befell = says.TO_HIT.search(before) or (who.counted and rule("near_events.unavoidable").search(before))
+    befell = says.TO_HIT.search(before) or (roster.counted and rule("near_events.unavoidable").search(before))
     if not befell and (says.NEAR_MISS.search(before) or is_noun(before, m.group(), behind)):
         return None
     nxt = HIT.search(behind)
@@ -113,8 +119,8 @@ def _blow(
     thing = (says.THING_WAS.search(before) or says.PERSON_WAS.search(before)) if passive else None
     if thing:
         return _thing_hit(told, thing, scope, m.group())
-    if not passive and who.counted and (moves := says.THING_MOVES.search(before)):
-        return _hit_by_thing(told, moves, scope, m.group(), who)
+    if not passive and roster.counted and (moves := says.THING_MOVES.search(before)):
+        return _hit_by_thing(told, moves, scope, m.group(), roster)
     subjects = _subjects(told, before, m, starts)
     if not subjects:
         return None
@@ -122,38 +128,40 @@ def _blow(
         return _mutual(told, subjects, m.group(), before, scope)
     actor, actor_area = subjects[0], subject_area(before, subjects[0])
     if actor not in MENTION.findall(before):
-        actor = _meant_by_pronoun(told, actor, scope, who)
-    other = None if passive or not who.counted else who.other(actor)
+        actor = _meant_by_pronoun(told, actor, scope, roster)
+    other = None if passive or not roster.counted else roster.other(actor)
     if other and (part := door_of(actor, before, scope)):
         actor, actor_area = other, area_of(part)
     return (
-        _passive(told, actor, actor_area, scope, m.group(), who)
+        _passive(told, actor, actor_area, scope, m.group(), roster)
         if passive
-        else _active(told, actor, actor_area, scope, m.group(), who)
+        else _active(told, actor, actor_area, scope, m.group(), roster)
     )
 
 
-def _meant_by_pronoun(told: Statement, actor: str, scope: str, who: Roster) -> str:
+def _meant_by_pronoun(told: Statement, actor: str, scope: str, roster: Roster) -> str:
     """Whom "it" means that struck or was struck: not whom the sentence itself names behind the verb."""
     whom = MENTION.search(scope)
-    return (_the_other(told, actor, who) or actor) if whom and whom.group() == actor else actor
+    return (_the_other(told, actor, roster) or actor) if whom and whom.group() == actor else actor
 
 
-def _thing_hit(told: Statement, thing: re.Match[str], scope: str, verb: str) -> Blow | None:
+def _thing_hit(told: Statement, thing: re.Match[str], scope: str, verb: str) -> ContactMention | None:
     """ "A tree was struck by the front of V1"."""
     by = says.BY.search(scope)
     if not by:
         return None
     area = area_if_told(by["area"])
-    return Blow(by["v"], thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
+    return ContactMention(by["v"], thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
 
 
-def _hit_by_thing(told: Statement, thing: re.Match[str], scope: str, verb: str, who: Roster) -> Blow | None:
+def _hit_by_thing(
+    told: Statement, thing: re.Match[str], scope: str, verb: str, roster: Roster
+) -> ContactMention | None:
     """ "The gate closed and made contact with the front of V1"."""
-    whom, area = _object(told, "", scope, who)
-    if whom not in who.ids or whom is None:
+    whom, area = _object(told, "", scope, roster)
+    if whom not in roster.ids or whom is None:
         return None
-    return Blow(whom, thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
+    return ContactMention(whom, thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
 
 
 def _subjects(
@@ -172,7 +180,9 @@ def _subjects(
     return (told.subject,) if told.subject else ()
 
 
-def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
+def _active(
+    told: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
+) -> ContactMention | None:
     pair = paired_areas(scope)
     scope = _clause(says.ASIDE.sub(" ", scope))
     own = says.WITH_ITS.search(scope)
@@ -180,7 +190,7 @@ def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: st
         own = None  # "made contact with the left door": whose door it is stands elsewhere
     area = area_of(own["area"]) if own else area
     rest = scope[: own.start()] + scope[own.end() :] if own else scope
-    other, other_area = _object(told, actor, rest, who)
+    other, other_area = _object(told, actor, rest, roster)
     if other is None:
         return None
     if (named := rule("contact.with_area_of").search(scope)) and named["v"] != other and scope[: named.start()].strip():
@@ -191,17 +201,17 @@ def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: st
         area = area or "back"
     if pair and area is None:
         area, other_area = pair
-    blow = Blow(actor, other, area, other_area, told.number, told.role, False, verb.lower())
-    return _area_against_area(blow, scope)
+    mention = ContactMention(actor, other, area, other_area, told.number, told.role, False, verb.lower())
+    return _area_against_area(mention, scope)
 
 
-def _area_against_area(blow: Blow, scope: str) -> Blow:
+def _area_against_area(mention: ContactMention, scope: str) -> ContactMention:
     """The blow with the areas of "the left side of V1 against the right side of V2" behind its verb."""
     met = says.AGAINST.search(scope)
-    if not met or {met["v1"], met["v2"]} != {blow.actor, blow.other}:
-        return blow
+    if not met or {met["v1"], met["v2"]} != {mention.actor, mention.other}:
+        return mention
     zones = {met["v1"]: area_if_told(met["a1"]), met["v2"]: area_if_told(met["a2"])}
-    return replace(blow, actor_area=zones[blow.actor], other_area=zones[blow.other])
+    return replace(mention, actor_area=zones[mention.actor], other_area=zones[mention.other])
 
 
 def _clause(scope: str) -> str:
@@ -211,47 +221,47 @@ def _clause(scope: str) -> str:
     return scope[: end.start()] if end else scope
 
 
-def _object(told: Statement, actor: str, scope: str, who: Roster) -> tuple[str | None, Zone | None]:
+def _object(told: Statement, actor: str, scope: str, roster: Roster) -> tuple[str | None, Zone | None]:
     """What was hit, and where."""
     m = says.ACTIVE_OBJECT.match(scope)
     thing = says.OBJECT.match(scope)
     if m and not (thing and thing.end() < m.start("v") and thing["object"].lower() != "trailer"):
         area = area_if_told(m["area"]) or _area_behind(scope[m.end() :])
-        return _not_itself(m["v"], actor, who, told), area
+        return _not_itself(m["v"], actor, roster, told), area
     if thing and thing["object"].lower() not in ("trailer", "parked"):
         return thing["object"].lower(), None
     if says.PRONOUN_OBJECT.match(scope) or says.THE_AREA.match(scope) or rule("contact.nothing").match(scope):
         only = says.THE_AREA.match(scope)
-        return _the_other(told, actor, who), area_if_told(only["area"]) if only else _area_behind(scope) or _damaged(
-            told, who
+        return _the_other(told, actor, roster), area_if_told(only["area"]) if only else _area_behind(scope) or _damaged(
+            told, roster
         )
     late = MENTION.search(scope)
     if late and late.group() != actor and late.start() < 60:
         named = rule("contact.area_of_vehicle").given(vehicle=late.group()).search(scope)
         return late.group(), area_if_told(named["area"]) if named else _area_behind(scope[late.end() :])
-    anything = says.ANY_OBJECT.match(scope) if who.counted else None
+    anything = says.ANY_OBJECT.match(scope) if roster.counted else None
     return (anything["object"].lower(), None) if anything else (None, None)
 
 
-def _the_other(told: Statement, actor: str, who: Roster) -> str | None:
+def _the_other(told: Statement, actor: str, roster: Roster) -> str | None:
     """The vehicle that "it" means: of two the other one, else another of the sentence, else the unnumbered subject."""
-    subject = next((v for v in who.ids[:1] if who.counted and v != actor), None)
-    named = (v for v in MENTION.findall(told.text) if v != actor and v in who.ids)
+    subject = next((v for v in roster.ids[:1] if roster.counted and v != actor), None)
+    named = (v for v in MENTION.findall(told.text) if v != actor and v in roster.ids)
     earlier = told.earlier if told.earlier != actor else None
-    return who.other(actor) or next(named, subject or earlier)
+    return roster.other(actor) or next(named, subject or earlier)
 
 
-def _damaged(told: Statement, who: Roster) -> Zone | None:
+def _damaged(told: Statement, roster: Roster) -> Zone | None:
     """ "The left side of V2 was damaged when V1 contacted it": the area that the sentence begins with."""
-    found = says.DAMAGED.match(plain(told, who))
+    found = says.DAMAGED.match(plain(told, roster))
     return area_of(found["area"]) if found else None
 
 
-def _not_itself(named: str, actor: str, who: Roster, told: Statement) -> str | None:
+def _not_itself(named: str, actor: str, roster: Roster, told: Statement) -> str | None:
     """A vehicle cannot strike itself: the writer meant the other one, or whom the sentence before is about."""
     if named != actor:
         return named
-    return who.other(actor) if who.counted else _the_other(told, actor, who)
+    return roster.other(actor) if roster.counted else _the_other(told, actor, roster)
 
 
 def _area_behind(text: str) -> Zone | None:
@@ -261,11 +271,13 @@ def _area_behind(text: str) -> Zone | None:
     return next(filter(None, areas), None) if says.ON_THE.search(near) else None
 
 
-def _passive(told: Statement, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
+def _passive(
+    told: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
+) -> ContactMention | None:
     by = says.BY.search(scope)
     where = says.ON_THE.search(scope[: by.start()] if by else scope) or rule("contact.area_first").match(scope)
     area = area or (area_of(where["area"]) if where else None)
-    other = by["v"] if by else who.other(actor)
+    other = by["v"] if by else roster.other(actor)
     if by and rule("contact.by_stranger").search(scope[: by.start()]):
         return None
     other_area = area_if_told(by["area"]) if by else area_by(scope)
@@ -277,17 +289,19 @@ def _passive(told: Statement, actor: str, area: Zone | None, scope: str, verb: s
         return None
     area, other_area = struck_pair(scope, area, other_area)
     area = area or (_area_behind(scope[by.end() :]) if by and not own else None)
-    other = _not_itself(other, actor, who, told) or other
-    return Blow(other, actor, other_area, area, told.number, told.role, True, verb.lower())
+    other = _not_itself(other, actor, roster, told) or other
+    return ContactMention(other, actor, other_area, area, told.number, told.role, True, verb.lower())
 
 
-def _mutual(told: Statement, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> Blow:
+def _mutual(told: Statement, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> ContactMention:
     """ "V1 and V2 collided front to front"."""
     against = says.AGAINST.search(scope)
     if against:
         zones = {against["v1"]: area_if_told(against["a1"]), against["v2"]: area_if_told(against["a2"])}
         first, second = zones.get(subjects[0]), zones.get(subjects[1])
-        return Blow(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)
+        return ContactMention(
+            subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True
+        )
     pair = says.PAIRED.search(scope)
     first, second = (area_if_told(pair["a1"]), area_if_told(pair["a2"])) if pair else (None, None)
     if not pair:
@@ -295,4 +309,4 @@ def _mutual(told: Statement, subjects: tuple[str, ...], verb: str, before: str, 
         first = second = area_of(both["area"]) if both else None
     if rule("contact.head_on").search(scope):
         first = second = "front"
-    return Blow(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)
+    return ContactMention(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)

@@ -17,8 +17,8 @@ from sgcad_core.reading.actors.vehicles import MENTION
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import DRIVES, Cue
-from sgcad_core.reading.provenance.crash_provenance import Telling, default
+from sgcad_core.reading.motion.motion_record import DRIVES, Source
+from sgcad_core.reading.provenance.crash_provenance import FactBuilder, default
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.specs import Maneuver
 
@@ -34,16 +34,16 @@ _BEGINS: dict[Maneuver, float] = {
 _FROM_DRIVEWAY, _FROM_STOP, _RAN_INTO = 0.6, 0.3, 1.5
 
 
-class Sign(NamedTuple):
+class RoleEvidence(NamedTuple):
     """One thing that speaks for (or, negative, against) a vehicle's having begun the crash."""
 
     vehicle: str
     weight: float
     rule: str
-    cue: Cue | None = None
+    source: Source | None = None
 
 
-def role_facts(telling: Telling, statements: Sequence[Statement], crash: CrashFacts) -> Iterator[Fact]:
+def role_facts(builder: FactBuilder, statements: Sequence[Statement], crash: CrashFacts) -> Iterator[Fact]:
     """`vehicles.<id>.role` (and `others.<id>.role`) of everybody in the crash."""
     ids = [v.id for v in crash.vehicles] + [o.id for o in crash.others]
     signs = [*_told_signs(statements, {v.id for v in crash.vehicles}), *_maneuver_signs(crash)]
@@ -54,7 +54,7 @@ def role_facts(telling: Telling, statements: Sequence[Statement], crash: CrashFa
         if not pair or name not in pair:
             yield default(field, "bystander", "who takes no part in the first contact is a bystander")
         else:
-            yield _fact(telling, field, name, first, signs, pair)
+            yield _fact(builder, field, name, first, signs, pair)
 
 
 def _pair(crash: CrashFacts) -> tuple[str, str] | None:
@@ -64,14 +64,14 @@ def _pair(crash: CrashFacts) -> tuple[str, str] | None:
     return (crash.vehicles[0].id, crash.vehicles[1].id) if len(crash.vehicles) > 1 else None
 
 
-def _initiator(pair: tuple[str, str], signs: Iterable[Sign]) -> str:
+def _initiator(pair: tuple[str, str], signs: Iterable[RoleEvidence]) -> str:
     """The one of both with more signs; the striker where nothing tells them apart."""
     score = {name: sum(s.weight for s in signs if s.vehicle == name) for name in pair}
     return pair[0] if score[pair[0]] >= score[pair[1]] else pair[1]
 
 
 def _fact(
-    telling: Telling, field: str, name: str, first: str | None, signs: Sequence[Sign], pair: tuple[str, str]
+    builder: FactBuilder, field: str, name: str, first: str | None, signs: Sequence[RoleEvidence], pair: tuple[str, str]
 ) -> Fact:
     """The role with the sign that weighs most for it: one's own, else the other one's."""
     role: CrashRole = "initiator" if name == first else "responder"
@@ -80,13 +80,17 @@ def _fact(
     for whose, sign_of in ((name, way), (other, -way)):
         best = max((s for s in signs if s.vehicle == whose), key=lambda s: s.weight * sign_of, default=None)
         if best is not None and best.weight * sign_of > 0:
-            told = best.cue and whose == name and best.weight * sign_of >= _EVENT
-            return telling.stated(field, role, best.cue) if told else telling.inferred(field, role, best.rule, best.cue)
+            told = best.source and whose == name and best.weight * sign_of >= _EVENT
+            return (
+                builder.stated(field, role, best.source)
+                if told
+                else builder.inferred(field, role, best.rule, best.source)
+            )
     return default(field, role, "the striker began unless more is told")
 
 
 # ------------------------------------------------------------------ what sentences tell
-def _told_signs(statements: Sequence[Statement], known: set[str]) -> Iterator[Sign]:
+def _told_signs(statements: Sequence[Statement], known: set[str]) -> Iterator[RoleEvidence]:
     for sentence in statements:
         named = [v for v in MENTION.findall(sentence.text) if v in known]
         owner = named[0] if named else sentence.subject
@@ -94,12 +98,12 @@ def _told_signs(statements: Sequence[Statement], known: set[str]) -> Iterator[Si
             yield from _of_sentence(sentence, owner)
 
 
-def _of_sentence(sentence: Statement, owner: str) -> Iterator[Sign]:
+def _of_sentence(sentence: Statement, owner: str) -> Iterator[RoleEvidence]:
     text = sentence.text.lower()
     coded = sentence.role == "codes" or (sentence.role != "factors" and bool(rule("crash_roles.coded").search(text)))
     if (read := _read(text, sentence.subject == owner, coded)) is not None:
         weight, name = read
-        yield Sign(owner, weight, name, Cue(sentence.number, text[:60], name))
+        yield RoleEvidence(owner, weight, name, Source(sentence.number, text[:60], name))
 
 
 def _read(text: str, is_subject: bool, coded: bool) -> tuple[float, str] | None:
@@ -128,13 +132,13 @@ def _read_event(text: str) -> tuple[float, str]:
 
 
 # ------------------------------------------------------------------ what maneuvers suggest
-def _maneuver_signs(crash: CrashFacts) -> Iterator[Sign]:
+def _maneuver_signs(crash: CrashFacts) -> Iterator[RoleEvidence]:
     for v in crash.vehicles:
-        yield Sign(v.id, _MANEUVER * _begins(v), "crash_roles.maneuver")
+        yield RoleEvidence(v.id, _MANEUVER * _begins(v), "crash_roles.maneuver")
     for contact in crash.contacts[:1]:
         backed = any(v.id == contact.struck and v.maneuver == "backing" for v in crash.vehicles)
         if contact.striker_area == "front" and contact.struck_area == "back" and not backed:
-            yield Sign(contact.striker, _RAN_INTO, "crash_roles.rear end")
+            yield RoleEvidence(contact.striker, _RAN_INTO, "crash_roles.rear end")
 
 
 def _begins(v: VehicleFacts) -> float:

@@ -23,7 +23,7 @@ _TURNS: dict[Uses, Turn] = {
 _FROM_CURB: tuple[Turn, ...] = ("right", "through_right", "left_right", "any", "through", "left_through", "left")
 
 
-class Token(NamedTuple):
+class ApproachToken(NamedTuple):
     """A part of a sentence, by the rule that reads it."""
 
     kind: str
@@ -33,23 +33,23 @@ class Token(NamedTuple):
     use: str = ""
 
 
-def tokens(text: str, names: tuple[str, ...] = ()) -> list[Token]:
+def tokens(text: str, names: tuple[str, ...] = ()) -> list[ApproachToken]:
     """Parts in order, none within another; of two that begin at one place the longer, else the one of lower weight.
 
     `names`: of roads.
     """
     found = [
-        (m.start(), -m.end(), place, Token(by.yields["token"], m.start(), m.end(), m, by.yields.get("use", "")))
+        (m.start(), -m.end(), place, ApproachToken(by.yields["token"], m.start(), m.end(), m, by.yields.get("use", "")))
         for place, by in enumerate(of_role("approach_token"))
         for m in by.finditer(text)
         if m.end() > m.start()
     ]
     found += [
-        (m.start(), -m.end(), 99, Token("named", m.start(), m.end(), m))
+        (m.start(), -m.end(), 99, ApproachToken("named", m.start(), m.end(), m))
         for name in names
         for m in rule("approaches.named").given(name=name).finditer(text)
     ]
-    kept: list[Token] = []
+    kept: list[ApproachToken] = []
     for _, _, _, token in sorted(found, key=lambda one: one[:3]):
         if not kept or token.start >= kept[-1].end:
             kept.append(token)
@@ -57,7 +57,7 @@ def tokens(text: str, names: tuple[str, ...] = ()) -> list[Token]:
 
 
 @dataclass
-class Item:
+class LaneItem:
     """Some lanes: how many, the uses of each as far as told (`soft`: joined by "and" to the item before)."""
 
     count: int
@@ -79,7 +79,7 @@ class Item:
         return not (self.uses or self.way == "out" or self.bare or self.which)
 
 
-def items_of(part: Token, text: str, listing: bool) -> list[Item]:
+def items_of(part: ApproachToken, text: str, listing: bool) -> list[LaneItem]:
     """The lanes of a count: "two through lanes"; "right-turn and left-turn lanes" are one each. Nothing of "the lane".
 
     `listing`: within a list, where "right lane" is one too.
@@ -87,7 +87,7 @@ def items_of(part: Token, text: str, listing: bool) -> list[Item]:
     words = part.match.groupdict()
     if part.kind == "which":
         number = 2 if words["which"].endswith(("two", "others")) else 1
-        return [Item(number, which=True, start=part.start, end=part.end)]
+        return [LaneItem(number, which=True, start=part.start, end=part.end)]
     if part.kind == "number" and _no_count(words["count"], text[: part.start]):
         return []
     mods = (words.get("mods") or "").lower()
@@ -103,8 +103,8 @@ def items_of(part: Token, text: str, listing: bool) -> list[Item]:
     way: Literal["", "out"] = "out" if out else ""
     single = words.get("noun") == "lane" and not rule("approaches.two_turns").search(mods)
     if part.kind == "lanes" and len(uses) > 1 and not single and (not count or count_of(count) in (1, len(uses))):
-        return [Item(1, [use], way, toward, start=part.start, end=part.end) for use in uses]
-    return [Item(count_of(count), uses, way, toward, start=part.start, end=part.end)]
+        return [LaneItem(1, [use], way, toward, start=part.start, end=part.end) for use in uses]
+    return [LaneItem(count_of(count), uses, way, toward, start=part.start, end=part.end)]
 
 
 def _no_count(count: str, before: str) -> bool:
@@ -121,7 +121,7 @@ def count_of(word: str | None) -> int:
 
 
 # ------------------------------------------------------------------ uses of the lanes of one approach
-def lane_uses(items: list[Item]) -> tuple[int, tuple[Turn, ...]]:
+def lane_uses(items: list[LaneItem]) -> tuple[int, tuple[Turn, ...]]:
     """Lanes towards the junction and, where turn lanes are told, the use of each from the right curb."""
     total, rest = _total(items)
     elements = _elements(rest, total)
@@ -148,7 +148,7 @@ def _rest(elements: list[tuple[Uses, int]], spare: int) -> list[tuple[Uses, int]
     return [(frozenset(used), 1) for used in rest]
 
 
-def _total(items: list[Item]) -> tuple[int | None, list[Item]]:
+def _total(items: list[LaneItem]) -> tuple[int | None, list[LaneItem]]:
     """The number of all lanes where one comes before the list of what they are for, and the list."""
     first, *rest = items
     if len(first.uses) == 1 and first.count > 1 and rest and all(i.bare for i in rest) and first.count == 1 + len(rest):
@@ -162,11 +162,11 @@ def _total(items: list[Item]) -> tuple[int | None, list[Item]]:
     return None, items
 
 
-def _fits(total: int, items: list[Item]) -> bool:
+def _fits(total: int, items: list[LaneItem]) -> bool:
     return sum(item.count for item in items) == total and total > 1
 
 
-def _elements(items: list[Item], total: int | None) -> list[tuple[Uses, int]]:
+def _elements(items: list[LaneItem], total: int | None) -> list[tuple[Uses, int]]:
     """Uses and number of each kind of lane; "straight and right" are uses of one lane unless the total needs two."""
     split = [(frozenset(item.uses), item.count) for item in items]
     if total is not None and sum(n for _, n in split) == total:

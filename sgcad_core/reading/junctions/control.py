@@ -14,9 +14,9 @@ from typing import Literal
 from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.language import Rule, rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.road_mentions import axis_in, axis_of
-from sgcad_core.reading.roads.road_merge import GatheredRoad
+from sgcad_core.reading.roads.road_merge import MergedRoad
 from sgcad_core.reading.roads.street_names import StreetNames, street_names
 from sgcad_core.reading.text.compass import compass_of, turned
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, STORY_ROLES
@@ -38,7 +38,7 @@ _ANYWHERE = ("all_way_stop", "yield")
 """Told of no works zone and no police car."""
 
 
-def control_of(told: Sequence[Statement]) -> tuple[Control, Cue | None]:
+def control_of(told: Sequence[Statement]) -> tuple[Control, Source | None]:
     """Signal, stop, yield or flashing, and where it is told: the crash's sentences first, then what drivers said."""
     said = [t for t in told if t.role not in ("codes", "factors")]
     for story in (True, False):
@@ -48,7 +48,7 @@ def control_of(told: Sequence[Statement]) -> tuple[Control, Cue | None]:
     return "none", None
 
 
-def _first_control(said: Sequence[Statement]) -> tuple[Control, Cue] | None:
+def _first_control(said: Sequence[Statement]) -> tuple[Control, Source] | None:
     out = any(rule("control.signal_out").search(t.text) for t in said)
     bare = [t._replace(text=_NOT_CONTROL.sub(" ", _NOT_SIGNAL.sub(" ", t.text))) for t in said]
     for control, by in _CONTROLS:
@@ -57,7 +57,7 @@ def _first_control(said: Sequence[Statement]) -> tuple[Control, Cue] | None:
         for t in said if control == "flashing" else bare:
             match = by.search(t.text)
             if match and (control in _ANYWHERE or not _CONSTRUCTION.search(t.text)):
-                return control, Cue(t.number, match[0], by.id)
+                return control, Source(t.number, match[0], by.id)
     return None
 
 
@@ -78,7 +78,7 @@ _NEAR = 40
 
 
 def signed_legs(
-    told: Sequence[Statement], vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad], four_leg: bool
+    told: Sequence[Statement], vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad], four_leg: bool
 ) -> tuple[Compass, ...]:
     """Bearings of the legs under a stop or yield sign: one axis, both its ends where the road crosses."""
     names = street_names(told, {v.id: v.heading for v in vehicles if v.heading})
@@ -99,7 +99,7 @@ def signed_legs(
 
 
 def _signed(
-    told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad], names: StreetNames
+    told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad], names: StreetNames
 ) -> Iterator[list[Compass]]:
     text = _NOT_CONTROL.sub(" ", told.text)
     last = 0
@@ -124,7 +124,7 @@ def _street_of_sign(before: str, behind: str, sign: int, names: StreetNames) -> 
 
 
 def _legs_of_sign(
-    before: str, behind: str, told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]
+    before: str, behind: str, told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad]
 ) -> list[Compass]:
     """ "stop sign for northbound traffic", "on the side street", else who or what is named last before the sign."""
     whom = rule("control.for").match(behind)
@@ -144,7 +144,7 @@ def _legs_of_sign(
     return [turned(v.heading, 180) for v in vehicles if v.id == named and v.heading]
 
 
-def _side_legs(roads: Sequence[GatheredRoad]) -> list[Compass]:
+def _side_legs(roads: Sequence[MergedRoad]) -> list[Compass]:
     """Both legs of the road that is told to cross."""
     cross = [r.axis for r in roads if r.cross and r.axis]
     return [leg for axis in cross[:1] for leg in (axis, turned(axis, 180))]

@@ -25,8 +25,8 @@ from sgcad_core.reading.junctions.junction_stem import (
 )
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import DRIVES, Cue
-from sgcad_core.reading.roads.road_merge import GatheredRoad
+from sgcad_core.reading.motion.motion_record import DRIVES, Source
+from sgcad_core.reading.roads.road_merge import MergedRoad
 from sgcad_core.reading.roads.work_zones_openings import MEDIAN_OPENING, in_gores
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 from sgcad_core.records.specs import Compass
@@ -51,7 +51,7 @@ class JunctionFacts:
     skew_deg: int = 0
     offset: bool = False
     notes: tuple[str, ...] = field(default=())
-    where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
+    where: Mapping[str, Source] = field(default_factory=dict, compare=False, repr=False)
     """Where kind, control and stem were read, as far as they were."""
 
 
@@ -66,7 +66,7 @@ CIRCLE_LANES = rule("junction.roundabout_lanes")
 def junction_of(
     told: Sequence[Statement],
     vehicles: Sequence[VehicleFacts],
-    roads: Sequence[GatheredRoad],
+    roads: Sequence[MergedRoad],
     approaches: Approaches | None = None,
 ) -> JunctionFacts:
     """The junction that the story tells or that the vehicles' paths need; kind "none" on a plain road."""
@@ -102,16 +102,13 @@ def junction_of(
     return JunctionFacts(kind, stem, control, halted, stated, said is not None, skew_deg=skew, where=where)
 
 
-def _where(**cues: Cue | None) -> dict[str, Cue]:
-    return {name: cue for name, cue in cues.items() if cue}
+def _where(**cues: Source | None) -> dict[str, Source]:
+    return {name: source for name, source in cues.items() if source}
 
 
 # ------------------------------------------------------------------ kind
 def _kind(
-    story: Sequence[Statement],
-    told: Sequence[Statement],
-    vehicles: Sequence[VehicleFacts],
-    roads: Sequence[GatheredRoad],
+    story: Sequence[Statement], told: Sequence[Statement], vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad]
 ) -> tuple[JunctionKind, bool]:
     named = _named(story)[0]
     access = any(v.origin in DRIVES or v.target in DRIVES for v in vehicles)
@@ -151,17 +148,17 @@ def _access_kind(vehicles: Sequence[VehicleFacts]) -> JunctionKind:
     return ALLEY if used == {ALLEY} else DRIVEWAY
 
 
-def _named(story: Sequence[Statement]) -> tuple[JunctionKind | Literal["some"], Cue | None]:
+def _named(story: Sequence[Statement]) -> tuple[JunctionKind | Literal["some"], Source | None]:
     """The first junction kind that the story names, and where; "some" if it only says intersection."""
-    some: Cue | None = None
+    some: Source | None = None
     for t in story:
         text = MEDIAN_OPENING.sub(" ", rule("junction.no_junction").sub(" ", t.text))
         found = [(match, words, record) for record, words in _NAMED if (match := words.search(text))]
         if found:
             first, words, record = min(found, key=lambda place: place[0].start())
-            return record.kind, Cue(t.number, first[0], words.id)
+            return record.kind, Source(t.number, first[0], words.id)
         plain = _JUNCTION.search(text)
-        some = some or (Cue(t.number, plain[0], _JUNCTION.id) if plain else None)
+        some = some or (Source(t.number, plain[0], _JUNCTION.id) if plain else None)
     return "some" if some else "none", some
 
 
@@ -180,12 +177,12 @@ def _circle_lanes(story: Sequence[Statement]) -> int | None:
     return 2 if any(rule("junction.roundabout_lane").search(t.text) for t in story) else None
 
 
-def _ramp_used(vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> bool:
+def _ramp_used(vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad]) -> bool:
     """Whether a vehicle comes on a ramp."""
     return any(v.origin == RAMP for v in vehicles) or any(r.kind == RAMP and r.vehicles for r in roads)
 
 
-def _merging(story: Sequence[Statement], roads: Sequence[GatheredRoad]) -> bool:
+def _merging(story: Sequence[Statement], roads: Sequence[MergedRoad]) -> bool:
     text = " ".join(t.text for t in story)
     return bool(rule("junction.merging").search(text)) or any(r.kind == "freeway" for r in roads)
 
@@ -195,7 +192,7 @@ _SIDE_STREET = rule("junction.side_street")
 """A turn that somebody makes, means or waits to make, into a road that needs a junction."""
 
 
-def _one_sided(story: Sequence[Statement], roads: Sequence[GatheredRoad]) -> bool:
+def _one_sided(story: Sequence[Statement], roads: Sequence[MergedRoad]) -> bool:
     """Whether a side road is told to lie on one side or to end."""
     ends = rule("junction.ends_at")
     return any(

@@ -9,9 +9,9 @@ from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.inference.inference_state import QUARTER_DEG
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import DRIVES, Cue
+from sgcad_core.reading.motion.motion_record import DRIVES, Source
 from sgcad_core.reading.roads.road_mentions import axis_of
-from sgcad_core.reading.roads.road_merge import GatheredRoad
+from sgcad_core.reading.roads.road_merge import MergedRoad
 from sgcad_core.reading.text.compass import between, compass_of, turned
 from sgcad_core.records.specs import Compass
 
@@ -25,7 +25,7 @@ def stem_of(
     kind: JunctionKind,
     story: Sequence[Statement],
     vehicles: Sequence[VehicleFacts],
-    roads: Sequence[GatheredRoad],
+    roads: Sequence[MergedRoad],
     halted: Sequence[Compass],
     lead: Compass | None,
 ) -> Compass | None:
@@ -108,18 +108,18 @@ def crossing(vehicles: Sequence[VehicleFacts]) -> bool:
 
 def stem_told(
     story: Sequence[Statement], vehicles: Sequence[VehicleFacts], lead: Compass | None, only_compass: bool = False
-) -> tuple[Compass, Cue] | None:
+) -> tuple[Compass, Source] | None:
     for t in story:
         ends = ENDS.search(t.text)
         way = compass_of(ends["dir"]) if ends and ends["dir"] and rule("junction.junction").search(t.text) else None
         if ends and way:
-            return turned(way, 180), Cue(t.number, ends["dir"], ENDS.id)
+            return turned(way, 180), Source(t.number, ends["dir"], ENDS.id)
         place = SIDE_ROAD.search(t.text) or rule("junction.drive_side").search(t.text)
         if place:
             word = next(filter(None, place.groups()))
             found = _bearing(word, t, vehicles, lead)
             if found and not (only_compass and word.lower() in ("left", "right")):
-                return found, Cue(t.number, word, "junction.side_road")
+                return found, Source(t.number, word, "junction.side_road")
     return None
 
 

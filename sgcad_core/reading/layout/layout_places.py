@@ -87,8 +87,8 @@ def parking_lot(facts: RoadFacts, axis: Compass) -> RoadLayout:
     Who backs out of a stall or is parked stands square to the aisle: where nobody drives along it his heading tells it.
     """
     told = [(v.maneuver, v.heading) for v in facts.crash.vehicles if v.heading and v.heading_stated]
-    driven = [axis_of(heading) for did, heading in told if did not in ("parked", "backing")]
-    stalled = [heading for stands in ("backing", "parked") for did, heading in told if did == stands]
+    driven = [axis_of(heading) for maneuver, heading in told if maneuver not in ("parked", "backing")]
+    stalled = [heading for stands in ("backing", "parked") for maneuver, heading in told if maneuver == stands]
     square = [axis_of(turned(heading, 90)) for heading in stalled]
     across = axis in map(axis_of, stalled) and axis not in driven
     first = [] if across else [axis]

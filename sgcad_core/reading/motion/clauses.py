@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from sgcad_core.reading.actors.drivers import NOBODY, drivers
+from sgcad_core.reading.actors.drivers import NO_DRIVERS, drivers
 from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.text.normalise import NUMBERS, Role, Sentence
@@ -49,24 +49,24 @@ _BESIDE = rule("clauses.beside")
 _PRONOUN = rule("clauses.pronoun")
 
 
-def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Statement, ...]:
+def resolve_sentences(sentences: Iterable[Sentence], roster: Roster) -> tuple[Statement, ...]:
     """Sentences with vehicles resolved; "the other vehicle" and "this vehicle" follow the subject."""
     told: list[Statement] = []
     current: str | None = None
     several = True
     sentences = tuple(sentences)
-    resolved = [who.resolve(s.text) for s in sentences]
-    called = NOBODY if who.counted else drivers(resolved, who)
+    resolved = [roster.resolve(s.text) for s in sentences]
+    called = NO_DRIVERS if roster.counted else drivers(resolved, roster)
     for s, text in zip(sentences, resolved, strict=True):
-        text = text if who.counted else called.resolve(text)
-        text = _others(text, who, current, s.role)
+        text = text if roster.counted else called.resolve(text)
+        text = _others(text, roster, current, s.role)
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
         # one account in order: nobody is at rest for good before the blow, or asked of his health
         early = role in ("rest", "health") and all(t.role != "impact" for t in told)
         before = role == "other" and _begins_with_somebody(text) and all(t.role != "impact" for t in told)
-        if before or (who.counted and (early or (role == "other" and _SUBJECT.search(text)))):
+        if before or (roster.counted and (early or (role == "other" and _SUBJECT.search(text)))):
             role = "approach"
-        earlier, current = current, _main_subject(text, current, role, who)
+        earlier, current = current, _main_subject(text, current, role, roster)
         told.append(Statement(text, role, s.number, current, several, earlier))
         several = _of_several(text, several)
     return tuple(told)
@@ -86,10 +86,10 @@ def _of_several(text: str, before: bool) -> bool:
     return before and not MENTION.search(text)
 
 
-def _others(text: str, who: Roster, current: str | None, role: Role) -> str:
+def _others(text: str, roster: Roster, current: str | None, role: Role) -> str:
     """ "the other vehicle" as a number, where two vehicles leave no doubt."""
-    subject = next((v for v in MENTION.findall(text) if v in who.ids), None) or current
-    other = who.other(subject) if subject else None
+    subject = next((v for v in MENTION.findall(text) if v in roster.ids), None) or current
+    other = roster.other(subject) if subject else None
     if other:
         text = rule("clauses.other_vehicle").sub(other, text)
     if current and role not in ("codes", "factors"):
@@ -97,11 +97,11 @@ def _others(text: str, who: Roster, current: str | None, role: Role) -> str:
     return text
 
 
-def _main_subject(text: str, current: str | None, role: Role, who: Roster) -> str | None:
+def _main_subject(text: str, current: str | None, role: Role, roster: Roster) -> str | None:
     """The vehicle that a pronoun in the next sentence means; a number that is no vehicle's is nobody's."""
     if _PRONOUN.match(text) and current:
         return current
-    first = next((m for m in MENTION.finditer(text) if m[0] in who.ids), None)
+    first = next((m for m in MENTION.finditer(text) if m[0] in roster.ids), None)
     if not first:
         return current
     opening = text[: first.start()]
@@ -109,29 +109,29 @@ def _main_subject(text: str, current: str | None, role: Role, who: Roster) -> st
     return first.group() if early or current is None else current
 
 
-def segments(told: Iterable[Statement], who: Roster) -> tuple[Segment, ...]:
+def segments(told: Iterable[Statement], roster: Roster) -> tuple[Segment, ...]:
     """Every stretch of text with its subjects, in order; text before the first subject is left out."""
     found: list[Segment] = []
     for t in told:
-        found += _cut(t, who)
+        found += _cut(t, roster)
     return tuple(found)
 
 
-def _cut(told: Statement, who: Roster) -> list[Segment]:
-    starts = subject_starts(told, who)
+def _cut(told: Statement, roster: Roster) -> list[Segment]:
+    starts = subject_starts(told, roster)
     ends = [at for at, _, _ in starts[1:]] + [len(told.text)][: len(starts)]
     found = [
         Segment(subjects, _own(told.text[begin:end].lower().strip(" ,"), n), told.role, told.number, begin)
         for n, ((_, begin, subjects), end) in enumerate(zip(starts, ends, strict=True))
         if subjects
     ]
-    return [*_opening(told, starts), *found, *(also for one in found for also in _alike(one, who))]
+    return [*_opening(told, starts), *found, *(also for one in found for also in _alike(one, roster))]
 
 
-def _alike(segment: Segment, who: Roster) -> Iterator[Segment]:
+def _alike(segment: Segment, roster: Roster) -> Iterator[Segment]:
     """The same of somebody else: "V2 was southbound, and so was V1"."""
     same = rule("clauses.so_was").search(segment.text)
-    if same and (vehicle := same["v"].upper()) in who.ids:
+    if same and (vehicle := same["v"].upper()) in roster.ids:
         yield segment._replace(subjects=(vehicle,), text=segment.text[: same.start()])
 
 
@@ -149,14 +149,14 @@ def _opening(told: Statement, starts: list[tuple[int, int, tuple[str, ...]]]) ->
     return [Segment(starts[0][2], before.lower().strip(" ,"), told.role, told.number, 0)]
 
 
-def subject_starts(told: Statement, who: Roster) -> list[tuple[int, int, tuple[str, ...]]]:
+def subject_starts(told: Statement, roster: Roster) -> list[tuple[int, int, tuple[str, ...]]]:
     """(where the mention stands, where its text begins, who) of each subject."""
     text = told.text
     starts: list[tuple[int, int, tuple[str, ...]]] = []
     pronoun = _PRONOUN.match(text)
     if pronoun and told.subject:
-        everyone = len(who.ids) == 2 and rule("clauses.they").search(pronoun.group()) and _means_all(told, pronoun)
-        starts.append((0, pronoun.end(), who.ids if everyone else (told.subject,)))
+        everyone = len(roster.ids) == 2 and rule("clauses.they").search(pronoun.group()) and _means_all(told, pronoun)
+        starts.append((0, pronoun.end(), roster.ids if everyone else (told.subject,)))
     elif told.subject and not MENTION.search(text) and rule("clauses.headless").match(text):
         starts.append((0, 0, (told.subject,)))
     inside = 0
@@ -164,8 +164,8 @@ def subject_starts(told: Statement, who: Roster) -> list[tuple[int, int, tuple[s
         if m.start() < inside:
             continue
         inside = m.end() + _place_length(text[m.end() :])
-        subjects = _whom(m, who)
-        stranger = m.group("stranger") or (not subjects and m.group("one") in who.bystanders)
+        subjects = _whom(m, roster)
+        stranger = m.group("stranger") or (not subjects and m.group("one") in roster.bystanders)
         if (subjects or stranger) and _is_subject(text, m):
             resumed = _resumed(text, m, starts)
             starts += [(m.start(), m.end(), subjects), *resumed]
@@ -205,23 +205,27 @@ def _means_all(told: Statement, pronoun: re.Match[str]) -> bool:
     return told.several or bool(rule("clauses.both_behind").match(told.text[pronoun.end() :]))
 
 
-def _whom(match: re.Match[str], who: Roster) -> tuple[str, ...]:
+def _whom(match: re.Match[str], roster: Roster) -> tuple[str, ...]:
     if match.group("stranger"):
         return ()
     if match.group("both"):
-        if len(who.ids) > 2 and rule("clauses.the_two").match(match.group()):
-            return _last_two(match, who)
-        told = None if who.counted else rule("clauses.how_many").match(match.group())
-        return who.ids if len(who.ids) > 1 and (not told or NUMBERS[told["number"].lower()] == len(who.ids)) else ()
-    return tuple(dict.fromkeys(v for v in MENTION.findall(match.group()) if v in who.ids))
+        if len(roster.ids) > 2 and rule("clauses.the_two").match(match.group()):
+            return _last_two(match, roster)
+        told = None if roster.counted else rule("clauses.how_many").match(match.group())
+        return (
+            roster.ids
+            if len(roster.ids) > 1 and (not told or NUMBERS[told["number"].lower()] == len(roster.ids))
+            else ()
+        )
+    return tuple(dict.fromkeys(v for v in MENTION.findall(match.group()) if v in roster.ids))
 
 
-def _last_two(both: re.Match[str], who: Roster) -> tuple[str, ...]:
+def _last_two(both: re.Match[str], roster: Roster) -> tuple[str, ...]:
     """Whom "both" means where there are more: the two that are named last before it in its sentence; all where fewer
     than two are."""
-    named = [v for v in MENTION.findall(both.string[: both.start()]) if v in who.ids]
+    named = [v for v in MENTION.findall(both.string[: both.start()]) if v in roster.ids]
     last = tuple(dict.fromkeys(reversed(named)))[:2]
-    return last if len(last) > 1 else who.ids
+    return last if len(last) > 1 else roster.ids
 
 
 def _is_subject(text: str, match: re.Match[str]) -> bool:

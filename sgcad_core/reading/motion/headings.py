@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.motion.motion_record import Motion
+from sgcad_core.reading.motion.motion_record import VehicleMotion
 from sgcad_core.reading.text.compass import compass_of, turned
 from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.records.specs import Compass
@@ -18,7 +18,7 @@ _WAYS = ("dir", "dir2", "dir3", "dir4")
 """Groups of the way in alternatives of a rule."""
 
 
-def read_heading(motion: Motion, text: str, weight: int) -> None:
+def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
     told = [(m, by) for by in (rule("headings.heading"), rule("headings.heading_bare")) for m in by.finditer(text)]
     for m, by in sorted(told, key=lambda found: found[0].start()):
         words = m.groupdict()
@@ -49,14 +49,14 @@ def read_heading(motion: Motion, text: str, weight: int) -> None:
             motion.read(f"exit {heading}", m.group("dir"), _EXIT.id)
 
 
-def _note_origin(motion: Motion, text: str, told: re.Match[str], weight: int, by: str) -> None:
+def _note_origin(motion: VehicleMotion, text: str, told: re.Match[str], weight: int, by: str) -> None:
     """Note the way of who comes from a side, where a verb of coming stands before it or nothing does."""
     came = compass_of(told["dir"])
     if came and (not text[: told.start()].strip() or rule("headings.came").search(text[: told.start()])):
-        motion.heard(motion.headings, max(1, weight - 1), turned(came, 180), told["dir"], by)
+        motion.add_value(motion.headings, max(1, weight - 1), turned(came, 180), told["dir"], by)
 
 
-def _note_sense(motion: Motion, told: re.Match[str], way: Compass) -> None:
+def _note_sense(motion: VehicleMotion, told: re.Match[str], way: Compass) -> None:
     """Note that a vehicle is told to face that way, or to go there backward."""
     for sense, words in (("faces", rule("headings.facing")), ("backs", rule("headings.tail_first"))):
         if words.search(told.group()):
@@ -67,7 +67,7 @@ _MANY = {"both": 2} | NUMBERS
 _BOUND_VEHICLE = rule("headings.bound_vehicle")
 
 
-def note_bound(found: dict[str, Motion], text: str, weight: int) -> None:
+def note_headings_of_mentions(found: dict[str, VehicleMotion], text: str, weight: int) -> None:
     """ "the northbound V2" tells a heading wherever it stands."""
     for m in _BOUND_VEHICLE.finditer(text):
         vehicle = m["v"] or m["v2"] or m["v3"]
@@ -79,7 +79,7 @@ def note_bound(found: dict[str, Motion], text: str, weight: int) -> None:
             _note_heading(motion, m["dir"] or m["dir2"], weight, "headings.bound_all")
 
 
-def _note_heading(motion: Motion, word: str, weight: int, by: str) -> None:
+def _note_heading(motion: VehicleMotion, word: str, weight: int, by: str) -> None:
     heading = compass_of(word)
     if heading:
-        motion.heard(motion.headings, weight, heading, word, by)
+        motion.add_value(motion.headings, weight, heading, word, by)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 
 from sgcad_core.reading.language import Rule, of_role, rule
-from sgcad_core.reading.motion.motion_record import Deed, Motion
+from sgcad_core.reading.motion.motion_record import ManeuverCue, VehicleMotion
 from sgcad_core.reading.text.compass import between, compass_of, turned
 
 _TURNING = rule("deeds.turning")
@@ -26,7 +26,7 @@ _BEFORE = ("came_on", "moved_on")
 """What may be told behind what it came before: "stopped after passing the crosswalk"."""
 
 
-def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0) -> None:
+def read_maneuver_cues(motion: VehicleMotion, text: str, weight: int, number: int, at: int = 0) -> None:
     """Add what one segment tells; `at`: where in its sentence it begins."""
     for m in _TURNING.finditer(text):
         told = next((k for k in _SIDES if m.groupdict().get(k)), None)
@@ -41,17 +41,19 @@ def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0)
         led = before + text[m.start() : m.start(told) if told else m.start()]
         begun = rule("deeds.try").search(before[-14:]) or rule("deeds.begins").search(led)
         later = _LATER.search(before) and not begun
-        motion.deeds.append(
-            Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.end())
+        motion.cues.append(
+            ManeuverCue(
+                ("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.end()
+            )
         )
     _read_turn_to(motion, text, weight, number, at)
     told_now = of_role("deed_now") if motion.ordered else ()
-    for deed in (*of_role("deed"), *told_now):
-        for m in deed.finditer(text):
+    for cue in (*of_role("deed"), *told_now):
+        for m in cue.finditer(text):
             before = text[max(0, m.start() - 60) : m.start()]
-            undone = motion.ordered and _undone(deed.yields["deed"], before, m.group())
+            undone = motion.ordered and _undone(cue.yields["deed"], before, m.group())
             if not _NOT.search(before[-30:]) and not undone:
-                _note_deed(motion, deed, m, (weight, number, at + m.end()))
+                _note_cue(motion, cue, m, (weight, number, at + m.end()))
     if motion.ordered:
         _read_turn_on(motion, text, weight, number, at)
         _read_from_onto(motion, text, weight, number, at)
@@ -67,45 +69,47 @@ def _undone(kind: str, before: str, words: str) -> bool:
     return kind in _ONWARD and bool(unmoved or rule("deeds.not_yet").search(before + words))
 
 
-def _read_turn_on(motion: Motion, text: str, weight: int, number: int, at: int) -> None:
+def _read_turn_on(motion: VehicleMotion, text: str, weight: int, number: int, at: int) -> None:
     """A turn that goes on, to the hand to which the vehicle was told to turn or to mean to turn."""
     for m in rule("deeds.turn_on").finditer(text):
-        sides = [d.kind.removeprefix("want_") for d in motion.deeds if d.kind.removeprefix("want_") in _TURNS]
+        sides = [d.kind.removeprefix("want_") for d in motion.cues if d.kind.removeprefix("want_") in _TURNS]
         before = text[max(0, m.start() - 60) : m.start()]
         if sides and not _NOT.search(before) and not _LATER.search(before):
-            motion.deeds.append(Deed(sides[-1], weight, number, m.group(), "deeds.turn_on", at + m.end()))
+            motion.cues.append(ManeuverCue(sides[-1], weight, number, m.group(), "deeds.turn_on", at + m.end()))
 
 
-def _read_from_onto(motion: Motion, text: str, weight: int, number: int, at: int) -> None:
+def _read_from_onto(motion: VehicleMotion, text: str, weight: int, number: int, at: int) -> None:
     """ "From westbound Elm Street onto southbound Oak Avenue": a turn by its two directions, where no word tells it."""
     for m in rule("deeds.from_onto").finditer(text):
         start, end = compass_of(m["from"]), compass_of(m["onto"])
         side = _BY_ANGLE.get(between(start, end)) if start and end else None
-        told = any(d.number == number and d.kind.endswith(f"turn_{side}") for d in motion.deeds)
+        told = any(d.number == number and d.kind.endswith(f"turn_{side}") for d in motion.cues)
         if side and not told:
-            motion.deeds.append(Deed(f"turn_{side}", weight, number, m.group(), "deeds.from_onto", at + m.end()))
+            motion.cues.append(ManeuverCue(f"turn_{side}", weight, number, m.group(), "deeds.from_onto", at + m.end()))
 
 
-def _read_turn_to(motion: Motion, text: str, weight: int, number: int, at: int) -> None:
+def _read_turn_to(motion: VehicleMotion, text: str, weight: int, number: int, at: int) -> None:
     """ "Turned toward the north" of who heads east, and "wanted to go left": turns that no other word tells."""
-    if any(d.number == number and d.kind.removeprefix("want_") in _TURNS for d in motion.deeds):
+    if any(d.number == number and d.kind.removeprefix("want_") in _TURNS for d in motion.cues):
         return
     for m in rule("deeds.turn_to").finditer(text):
         start, end = motion.headings[0].value if motion.headings else None, compass_of(m["onto"])
         side = _BY_ANGLE.get(between(start, end)) if start and end else None
         if side and not _NOT.search(text[: m.start()]):
             want = "want_" if _LATER.search(text[: m.start()]) else ""
-            motion.deeds.append(Deed(f"{want}turn_{side}", weight, number, m.group(), "deeds.turn_to", at + m.end()))
+            motion.cues.append(
+                ManeuverCue(f"{want}turn_{side}", weight, number, m.group(), "deeds.turn_to", at + m.end())
+            )
     for m in rule("deeds.go_turn").finditer(text):
         want = "want_" if m["go"].lower() == "go" else ""
         if not _NOT.search(text[: m.start()]):
             kind = f"{want}turn_{m['hand'].lower()}"
-            motion.deeds.append(Deed(kind, weight, number, m.group(), "deeds.go_turn", at + m.end()))
+            motion.cues.append(ManeuverCue(kind, weight, number, m.group(), "deeds.go_turn", at + m.end()))
 
 
-def _note_deed(motion: Motion, deed: Rule, m: re.Match[str], told: tuple[int, int, int]) -> None:
+def _note_cue(motion: VehicleMotion, cue: Rule, m: re.Match[str], told: tuple[int, int, int]) -> None:
     """`told`: weight, sentence, place."""
-    kind, rule_id = deed.yields["deed"], deed.id
+    kind, rule_id = cue.yields["deed"], cue.id
     weight, number, at = told
     if kind == "from_side":
         motion.from_side = "left" if m.group("fromside").lower() == "left" else "right"
@@ -113,6 +117,6 @@ def _note_deed(motion: Motion, deed: Rule, m: re.Match[str], told: tuple[int, in
         entered = compass_of(m.group("bound"))
         own = motion.headings[0][1] if motion.headings else None
         if entered and own and turned(entered, 180) == own:
-            motion.deeds.append(Deed("crossing_centerline", weight, number, m.group(), rule_id, at))
+            motion.cues.append(ManeuverCue("crossing_centerline", weight, number, m.group(), rule_id, at))
     else:
-        motion.deeds.append(Deed(kind, weight, number, m.group(), rule_id, at))
+        motion.cues.append(ManeuverCue(kind, weight, number, m.group(), rule_id, at))

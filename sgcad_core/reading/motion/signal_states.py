@@ -11,7 +11,7 @@ from typing import Literal, NamedTuple
 
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES
 
 SignalState = Literal["green", "yellow", "red"]
@@ -21,7 +21,7 @@ class SignalTold(NamedTuple):
     """A state and where it is told."""
 
     state: SignalState
-    cue: Cue
+    source: Source
 
 
 def signal_states(segments: Iterable[Segment]) -> Mapping[str, SignalTold]:
@@ -41,7 +41,7 @@ def _told(segment: Segment) -> Iterator[SignalTold]:
     if rule("signal_states.hedged").search(segment.text):
         return
     found = [
-        (match.start(), SignalTold(told.yields["signal"], Cue(segment.number, match[0], told.id)))
+        (match.start(), SignalTold(told.yields["signal"], Source(segment.number, match[0], told.id)))
         for told in of_role("signal_state")
         for match in told.finditer(segment.text)
     ]

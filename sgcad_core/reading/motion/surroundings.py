@@ -7,30 +7,30 @@ import re
 from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.language import of_role, rule, values
-from sgcad_core.reading.motion.motion_record import Access, Motion
+from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
 from sgcad_core.reading.text.normalise import NUMBERS
 
 # ------------------------------------------------------------------ relation to the other vehicle
 
 
-def read_kin(motion: Motion, text: str, weight: int, vehicle: str, who: Roster) -> None:
+def read_relations(motion: VehicleMotion, text: str, weight: int, vehicle: str, roster: Roster) -> None:
     for told in of_role("kin"):
-        kin, word = told.yields["kin"], told.yields.get("word", "")
+        relation, word = told.yields["kin"], told.yields.get("word", "")
         for m in told.finditer(text):
             named = rule("surroundings.named").match(text[m.end() :])
             stranger = rule("surroundings.stranger").match(text[m.end() :])
             other = named.group(1).upper() if named else None
-            if other not in who.ids or other == vehicle:
+            if other not in roster.ids or other == vehicle:
                 other = None
-            if kin != "same" or not word or other or not stranger:
-                motion.kin.append((weight, kin, other or who.other(vehicle), word))
+            if relation != "same" or not word or other or not stranger:
+                motion.relations.append((weight, relation, other or roster.other(vehicle), word))
 
 
 # ------------------------------------------------------------------ lane, access
 _LANE = rule("surroundings.lane")
 
 
-def read_lane(motion: Motion, text: str) -> None:
+def read_lane(motion: VehicleMotion, text: str) -> None:
     if motion.lane or motion.lane_word:
         return
     for m in _LANE.finditer(text):
@@ -75,7 +75,7 @@ _RAMP = rule("surroundings.ramp")
 _SHOULDER = rule("surroundings.shoulder")
 
 
-def read_access(motion: Motion, text: str) -> None:
+def read_origin_and_target(motion: VehicleMotion, text: str) -> None:
     origin = _ORIGIN.search(text)
     if motion.origin is None and (found := _came_from(text, origin)):
         motion.origin, words, by = found

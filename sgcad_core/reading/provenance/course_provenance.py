@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sgcad_core.reading.inference.inference_state import Draft
-from sgcad_core.reading.provenance.crash_provenance import Telling
+from sgcad_core.reading.inference.inference_state import CrashTold
+from sgcad_core.reading.provenance.crash_provenance import FactBuilder
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.facts import Fact, Value
 
@@ -18,16 +18,16 @@ _REST = ("facing_deg", "where", "side", "attitude", "against")
 _PLAIN = ("lost_control", "spin", "spin_deg", "rolls")
 
 
-def course_provenance(telling: Telling, draft: Draft) -> Iterator[Fact]:
+def course_provenance(builder: FactBuilder, crash_told: CrashTold) -> Iterator[Fact]:
     """Facts of every vehicle's course, then of what else was hit, in order."""
-    for vehicle, course in draft.course.courses.items():
-        for name, value, source in _told(course):
-            cue = draft.course.sources.get(f"{vehicle} {source}")
-            yield telling.stated(f"vehicles.{vehicle}.{name}", value, cue)
-    for number, (impact, cue) in enumerate(draft.impacts):
+    for vehicle, course in crash_told.course.courses.items():
+        for name, value, told_as in _told(course):
+            source = crash_told.course.sources.get(f"{vehicle} {told_as}")
+            yield builder.stated(f"vehicles.{vehicle}.{name}", value, source)
+    for number, (impact, source) in enumerate(crash_told.impacts):
         for name in ("actor", "other", "actor_area", "other_area"):
             if (told := getattr(impact, name)) is not None:
-                yield telling.stated(f"impacts.{number}.{name}", told, cue)
+                yield builder.stated(f"impacts.{number}.{name}", told, source)
 
 
 def _told(course: CourseTold) -> Iterator[tuple[str, Value, str]]:

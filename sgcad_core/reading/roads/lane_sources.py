@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from sgcad_core.reading.language import of_role, rule
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.lanes import LaneFacts
 
 _RULES = {
@@ -42,17 +42,17 @@ def both(merged: LaneFacts, first: LaneFacts, more: LaneFacts) -> LaneFacts:
     return replace(merged, where=where | late)
 
 
-def also(facts: LaneFacts, name: str, source: str) -> Mapping[str, Cue]:
+def also(facts: LaneFacts, name: str, basis: str) -> Mapping[str, Source]:
     """The places with that of a fact that follows from another one."""
-    cue = facts.where.get(source)
-    return {**facts.where, **({name: cue} if cue else {})}
+    source = facts.where.get(basis)
+    return {**facts.where, **({name: source} if source else {})}
 
 
-def _cue(name: str, value: object, number: int, said: str) -> Cue:
+def _cue(name: str, value: object, number: int, said: str) -> Source:
     for by in _rules_of(name.split()[0], value):
         if match := rule(by).search(said):
-            return Cue(number, match[0].strip(" ,;."), by)
-    return Cue(number, "", "lanes.item")  # told by several counts together
+            return Source(number, match[0].strip(" ,;."), by)
+    return Source(number, "", "lanes.item")  # told by several counts together
 
 
 def _rules_of(name: str, value: object) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from sgcad_core.reading.language import rule, values
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.median import divided_and_median
 from sgcad_core.reading.roads.turn_lanes import spelled_out
 from sgcad_core.reading.text.compass import WORDS
@@ -55,7 +55,7 @@ class LaneFacts:
     """ "one lane of travel", of whichever direction: the whole of a one-way street, else one of several."""
     own: int | None = None
     """Lanes in the direction of the vehicle that the text speaks of: "in lane two of three lanes"."""
-    where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
+    where: Mapping[str, Source] = field(default_factory=dict, compare=False, repr=False)
     """Where each of them was read, by the names of `sgcad_core.reading.roads.lane_sources.stated`."""
 
     @property

@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.compass import compass_of, turned
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 from sgcad_core.records.specs import Compass
@@ -21,7 +21,7 @@ class Curve(NamedTuple):
 
     side: Literal["left", "right"]
     toward: Compass | None
-    cue: Cue
+    source: Source
 
 
 _CURVE = rule("road_details.curve")
@@ -32,8 +32,8 @@ def curves(told: Sequence[Statement], headings: Mapping[str, Compass]) -> tuple[
     """Curves in order; one whose side is not told is taken to the left of the first vehicle."""
     story = [t for t in told if t.role in STORY_ROLES]
     found = tuple(c for t in story for c in _curves(t, headings))
-    bare = [Cue(t.number, m[0], _BARE_CURVE.id) for t in story if (m := _BARE_CURVE.search(t.text))]
-    return found or tuple(Curve("left", None, cue) for cue in bare[:1])
+    bare = [Source(t.number, m[0], _BARE_CURVE.id) for t in story if (m := _BARE_CURVE.search(t.text))]
+    return found or tuple(Curve("left", None, source) for source in bare[:1])
 
 
 def _curves(told: Statement, headings: Mapping[str, Compass]) -> Iterator[Curve]:
@@ -44,8 +44,8 @@ def _curves(told: Statement, headings: Mapping[str, Compass]) -> Iterator[Curve]
         side = next(filter(None, m.groups())).lower()
         if rule("road_details.nearby").search(told.text[: m.start()]):
             continue
-        cue = Cue(told.number, m[0], _CURVE.id)
-        yield Curve("left" if side == "left" else "right", _driven(told, m.start(), m.end(), headings), cue)
+        source = Source(told.number, m[0], _CURVE.id)
+        yield Curve("left" if side == "left" else "right", _driven(told, m.start(), m.end(), headings), source)
 
 
 def _curves_by_way(told: Statement) -> Iterator[Curve]:
@@ -57,13 +57,13 @@ def _curves_by_way(told: Statement) -> Iterator[Curve]:
     for m, hand, way in ways:
         if way:
             side: Literal["left", "right"] = "left" if hand.lower() == "left" else "right"
-            yield Curve(side, turned(way, 180), Cue(told.number, m[0], coming.id))
+            yield Curve(side, turned(way, 180), Source(told.number, m[0], coming.id))
     if ways:
         return
     for by in (rule("road_details.curve_for"), rule("road_details.curve_as")):
         found = [(m, way) for m in by.finditer(told.text) if (way := compass_of(m["way"]))]
         for m, way in found:
-            yield Curve("left" if m["hand"].lower() == "left" else "right", way, Cue(told.number, m[0], by.id))
+            yield Curve("left" if m["hand"].lower() == "left" else "right", way, Source(told.number, m[0], by.id))
         if found:
             return
 

@@ -20,11 +20,11 @@ from sgcad_core.reading.junctions.unsupported_places import unsupported_places
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.absolute_headings import oriented
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.lanes import LaneFacts
 from sgcad_core.reading.roads.road_details import Curve, curves
 from sgcad_core.reading.roads.road_mentions import Kind, RoadMention, axis_of, road_mentions
-from sgcad_core.reading.roads.road_merge import GatheredRoad, gather
+from sgcad_core.reading.roads.road_merge import MergedRoad, merge_roads
 from sgcad_core.reading.roads.speed_limits import SpeedLimit, speed_limits
 from sgcad_core.reading.roads.work_zones_openings import (
     CLOSED_LANES,
@@ -53,7 +53,7 @@ class RoadFact:
     curve: tuple[tuple[Compass, Literal["left", "right"]], ...] = ()
     """(travel direction, side) of each bend told."""
     rural: bool = False
-    where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
+    where: Mapping[str, Source] = field(default_factory=dict, compare=False, repr=False)
     """Where axis, limit, each curve ("curve N") and "rural" were read; lanes know their own."""
 
     @property
@@ -83,7 +83,7 @@ class RoadFacts:
     urban: bool = False
     closed: ClosedLanes | None = None
     """Lanes that a work zone closes, where they can be drawn."""
-    opening: Cue | None = None
+    opening: Source | None = None
     """Where an opening in the median is told, if it can be drawn."""
     leaves: bool = False
     """Whether the ramp that is told leads off the road, not onto it."""
@@ -104,14 +104,14 @@ class RoadFacts:
         return tuple(r for r in self.roads if r.kind not in JOINING)
 
 
-def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> RoadFacts:
+def roads_of(told: tuple[Statement, ...], roster: Roster, crash: CrashFacts) -> RoadFacts:
     """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
-    mentions, crash = _alleys(road_mentions(_telling(told), who.ids), crash)
+    mentions, crash = _alleys(road_mentions(_telling(told), roster.ids), crash)
     crash = oriented(crash, mentions, told)
     driven = tuple(v for v in crash.vehicles if v.kind != "pedestrian") or crash.vehicles
     headings = {v.id: v.heading for v in driven if v.heading}
     limits, bends = speed_limits(told, headings), curves(told, headings)
-    gathered = gather(mentions, headings) or [GatheredRoad(None) for _ in limits[:1]]
+    gathered = merge_roads(mentions, headings) or [MergedRoad(None) for _ in limits[:1]]
     approaches = approaches_of(told)
     junction = junction_of(told, driven, gathered, approaches)
     rural = _rural(told)
@@ -181,13 +181,13 @@ def _somebody_walks(crash: CrashFacts) -> bool:
     return any(other.kind == "pedestrian" for other in crash.others)
 
 
-def _rural(told: tuple[Statement, ...]) -> Cue | None:
+def _rural(told: tuple[Statement, ...]) -> Source | None:
     """Where the text says that the crash was in the country."""
     story = (t for t in told if t.role in CRASH_ROLES)
-    return next((Cue(t.number, m[0], _RURAL.id) for t in story if (m := _RURAL.search(t.text))), None)
+    return next((Source(t.number, m[0], _RURAL.id) for t in story if (m := _RURAL.search(t.text))), None)
 
 
-def _with_rural(road: RoadFact, rural: Cue | None) -> RoadFact:
+def _with_rural(road: RoadFact, rural: Source | None) -> RoadFact:
     return replace(road, rural=True, where={**road.where, "rural": rural}) if rural else road
 
 
@@ -245,8 +245,8 @@ def _without_circle(told: Statement) -> Statement:
 
 
 def _road(
-    road: GatheredRoad,
-    all_roads: list[GatheredRoad],
+    road: MergedRoad,
+    all_roads: list[MergedRoad],
     limits: tuple[SpeedLimit, ...],
     bends: tuple[Curve, ...],
     headings: dict[str, Compass],
@@ -256,16 +256,16 @@ def _road(
     lead = (along[0] if along else road.axis) if streets and road is streets[0] else None
     limit = _limit(road, limits) if road.kind != DRIVEWAY else None
     curves = _bends(road, lead, bends)
-    where = {f"curve {way}": bend.cue for way, bend in curves.items()}
-    where |= {"axis": Cue(road.axis_at, "", "mentions.axis")} if road.axis_at is not None else {}
-    where |= {"speed_limit": limit.cue} if limit else {}
+    where = {f"curve {way}": bend.source for way, bend in curves.items()}
+    where |= {"axis": Source(road.axis_at, "", "mentions.axis")} if road.axis_at is not None else {}
+    where |= {"speed_limit": limit.source} if limit else {}
     return RoadFact(
         road.axis, road.kind, road.lanes, tuple(road.vehicles), road.cross,
         limit.mph if limit else None, tuple((way, bend.side) for way, bend in curves.items()), where=where,
     )  # fmt: skip
 
 
-def _limit(road: GatheredRoad, limits: tuple[SpeedLimit, ...]) -> SpeedLimit | None:
+def _limit(road: MergedRoad, limits: tuple[SpeedLimit, ...]) -> SpeedLimit | None:
     """The road's own limit, else one that holds for all."""
     own = [limit for limit in limits if limit.axis and limit.axis == road.axis]
     cross = [limit for limit in limits if limit.cross and not limit.axis and road.cross]
@@ -273,7 +273,7 @@ def _limit(road: GatheredRoad, limits: tuple[SpeedLimit, ...]) -> SpeedLimit | N
     return next(iter(own + cross + everywhere), None)
 
 
-def _bends(road: GatheredRoad, lead: Compass | None, bends: tuple[Curve, ...]) -> dict[Compass, Curve]:
+def _bends(road: MergedRoad, lead: Compass | None, bends: tuple[Curve, ...]) -> dict[Compass, Curve]:
     """Bends of the road's own directions; one without belongs to the main road as its first vehicle drives (`lead`)."""
     found: dict[Compass, Curve] = {}
     for bend in bends:

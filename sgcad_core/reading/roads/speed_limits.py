@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from sgcad_core.reading.language import Rule, of_role, rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.road_mentions import axis_in, axis_of
 from sgcad_core.reading.roads.street_names import StreetNames, street_names
 from sgcad_core.reading.text.compass import compass_of
@@ -29,7 +29,7 @@ class SpeedLimit(NamedTuple):
     mph: int
     axis: Compass | None
     cross: bool
-    cue: Cue
+    source: Source
 
 
 _LIMIT = rule("road_details.limit")
@@ -52,7 +52,7 @@ def _limits(told: Statement, headings: Mapping[str, Compass], names: StreetNames
         behind = text[value.end : stated[index + 1].start if index + 1 < len(stated) else len(text)]
         if LOWEST_MPH <= value.mph <= HIGHEST_MPH:
             axis, cross = _whose(before, behind, headings, names)
-            yield SpeedLimit(value.mph, axis, cross, Cue(told.number, value.words, value.rule))
+            yield SpeedLimit(value.mph, axis, cross, Source(told.number, value.words, value.rule))
 
 
 # ------------------------------------------------------------------ values

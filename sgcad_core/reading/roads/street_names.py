@@ -23,7 +23,7 @@ _REACH = 90
 _KNOWN = (rule("street_names.typed"), rule("street_names.numbered"), rule("street_names.behind_on"))
 
 
-class Named(NamedTuple):
+class StreetMention(NamedTuple):
     """A street's name in a text."""
 
     name: str
@@ -37,7 +37,7 @@ class StreetNames(NamedTuple):
     axes: Mapping[str, Compass]
     pattern: re.Pattern[str] | None
 
-    def in_text(self, text: str) -> Iterator[Named]:
+    def in_text(self, text: str) -> Iterator[StreetMention]:
         """Every name in a text, in order."""
         return _in_text(self.pattern, text)
 
@@ -69,10 +69,10 @@ def street_names(told: Iterable[Statement], headings: Mapping[str, Compass]) -> 
     return StreetNames(axes, pattern)
 
 
-def _in_text(pattern: re.Pattern[str] | None, text: str) -> Iterator[Named]:
+def _in_text(pattern: re.Pattern[str] | None, text: str) -> Iterator[StreetMention]:
     if pattern is not None:
         for m in pattern.finditer(text):
-            yield Named(m["name"].lower(), m.start(), m.end())
+            yield StreetMention(m["name"].lower(), m.start(), m.end())
 
 
 def _most(count: Counter[Compass]) -> Compass | None:
@@ -81,7 +81,7 @@ def _most(count: Counter[Compass]) -> Compass | None:
     return None if rest and rest[0][1] == most else first
 
 
-def _told(text: str, one: Named, stop: int, headings: Mapping[str, Compass]) -> Iterator[tuple[Compass, int]]:
+def _told(text: str, one: StreetMention, stop: int, headings: Mapping[str, Compass]) -> Iterator[tuple[Compass, int]]:
     """What is said of a street where it is named: axes, each with a weight."""
     before = text[: one.start]
     if travel := rule("street_names.along").match(before):

@@ -12,7 +12,7 @@ from typing import Literal
 from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 from sgcad_core.records.specs import Compass
@@ -30,7 +30,7 @@ class ClosedLanes:
     count: int
     toward: Compass
     side_stated: bool
-    where: Cue = field(compare=False, repr=False)
+    where: Source = field(compare=False, repr=False)
 
 
 CLOSED_LANES = rule("places.closed_side")
@@ -55,16 +55,16 @@ def closed_lanes(told: Sequence[Statement], vehicles: Sequence[VehicleFacts]) ->
             word = next(parts[k] for k in ("side", "ahead", "noun", "blocked", "by") if parts[k]).lower()
             count = NUMBERS.get(number := (parts["count"] or parts["more"] or "1").lower()) or int(number)
             side: Side = "left" if word in _LEFT else "right"
-            return ClosedLanes(side, count, lead.heading, True, Cue(t.number, match[0], CLOSED_LANES.id))
+            return ClosedLanes(side, count, lead.heading, True, Source(t.number, match[0], CLOSED_LANES.id))
         if match := _CLOSURE.search(t.text):
-            return ClosedLanes(_left_by(lead), 1, lead.heading, False, Cue(t.number, match[0], _CLOSURE.id))
+            return ClosedLanes(_left_by(lead), 1, lead.heading, False, Source(t.number, match[0], _CLOSURE.id))
     return None
 
 
-def median_opening(told: Sequence[Statement]) -> Cue | None:
+def median_opening(told: Sequence[Statement]) -> Source | None:
     """Where a story tells of an opening in the median."""
     found = ((t, match) for t in _story(told) if (match := MEDIAN_OPENING.search(t.text)))
-    return next((Cue(t.number, match[0], MEDIAN_OPENING.id) for t, match in found), None)
+    return next((Source(t.number, match[0], MEDIAN_OPENING.id) for t, match in found), None)
 
 
 def in_gores(told: Sequence[Statement]) -> dict[str, InGore]:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 def model_claims(said: Answered) -> Claims:
     """What a model's answers say, each value with probability and grounding. What is null in them is no claim."""
-    sure = _Sure(said.p, said.nats, said.told)
+    sure = _Certainty(said.p, said.nats, said.told)
     found: Claims = {}
     for i, actor in enumerate(said.behavior.actors):
         at = f"crash.actors[{i}]"
@@ -42,7 +42,7 @@ def model_claims(said: Answered) -> Claims:
     return found | dict(_answered_roads(said.layout.legs, sure))
 
 
-class _Sure(NamedTuple):
+class _Certainty(NamedTuple):
     """Probability and grounding of every value by its path."""
 
     p: Mapping[str, float]
@@ -88,7 +88,7 @@ def _heading(road: str) -> Compass | None:
     return turned(bearing, 180) if bearing in COMPASS else None
 
 
-def _met(behavior: BehaviorSpec, sure: _Sure) -> Iterator[tuple[str, Claim]]:
+def _met(behavior: BehaviorSpec, sure: _Certainty) -> Iterator[tuple[str, Claim]]:
     if not behavior.contacts:
         return
     first, at = behavior.contacts[0], "crash.contacts[0]"
@@ -97,7 +97,7 @@ def _met(behavior: BehaviorSpec, sure: _Sure) -> Iterator[tuple[str, Claim]]:
     yield "areas", sure.claim(sides, f"{at}.striker_area", f"{at}.struck_area", joint=True)
 
 
-def _answered_roads(legs: tuple[Leg, ...], sure: _Sure) -> Iterator[tuple[str, Claim]]:
+def _answered_roads(legs: tuple[Leg, ...], sure: _Certainty) -> Iterator[tuple[str, Claim]]:
     at = {leg.bearing: f"road.legs[{i}]" for i, leg in enumerate(legs)}
 
     def claim(value: Any, some: Iterable[Leg], *names: str) -> Claim:

@@ -21,7 +21,7 @@ _OF_VEHICLES = {
 }  # fmt: skip
 
 
-class Taken(NamedTuple):
+class TakenValue(NamedTuple):
     """A value of the model's that is taken, how likely it is right, and what the model says of the evidence for it."""
 
     value: Any
@@ -30,9 +30,9 @@ class Taken(NamedTuple):
     nats: float
 
 
-def as_taken(said: Claim, p: float) -> Taken:
+def as_taken(said: Claim, p: float) -> TakenValue:
     """A claim that is right with this probability."""
-    return Taken(said.value, p, said.told, said.nats)
+    return TakenValue(said.value, p, said.told, said.nats)
 
 
 def controlled(legs: Sequence[tuple[Compass, Control]]) -> tuple[Control, tuple[Compass, ...]]:
@@ -43,7 +43,7 @@ def controlled(legs: Sequence[tuple[Compass, Control]]) -> tuple[Control, tuple[
     return kind, tuple(leg for leg, _ in legs) if kind in ("stop", "yield") else ()
 
 
-def facts_of(key: str, one: Taken, crash: CrashFacts) -> Iterator[Fact]:
+def facts_of(key: str, one: TakenValue, crash: CrashFacts) -> Iterator[Fact]:
     """The facts of a taken value (`sgcad_core.reading.second_reader.field_claims` names it); `crash`: with all that is
     taken."""
     name, _, of = key.partition(".")

@@ -119,10 +119,7 @@ def _corners(contact: ContactFacts) -> tuple[Any, ...]:
     """Sides by id that told corners allow as well; a side that nobody tells allows no other."""
     mays = [
         may if len(may) < len(AREAS) else (area,)
-        for may, area in (
-            (contact.striker_may, contact.striker_area),
-            (contact.struck_may, contact.struck_area),
-        )
+        for may, area in ((contact.striker_may, contact.striker_area), (contact.struck_may, contact.struck_area))
     ]
     return tuple(by_id({contact.striker: mine, contact.struck: theirs}) for mine, theirs in product(*mays))
 

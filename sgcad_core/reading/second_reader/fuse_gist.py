@@ -18,7 +18,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from sgcad_core.kinds import FOUR_LEG, Maneuver
-from sgcad_core.reading.contacts.near_crash import NearFacts
+from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
 from sgcad_core.reading.second_reader.seven_question_gist import (
     FIELDS,
@@ -27,7 +27,7 @@ from sgcad_core.reading.second_reader.seven_question_gist import (
     areas,
     meeting,
     partner,
-    rules_say,
+    rule_values,
 )
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.facts import Value as FactValue
@@ -36,7 +36,7 @@ from sgcad_core.records.specs import ActorKind, Area
 
 if TYPE_CHECKING:
     from sgcad_core.reading.reading import Reading
-    from sgcad_core.reading.second_reader.seven_question_gist import RulesSay
+    from sgcad_core.reading.second_reader.seven_question_gist import RuleValues
 
 FILLS = 0.6
 """From which probability on a value stands where the rules have none; of answers to the whole report also where they
@@ -55,7 +55,7 @@ class Decided(NamedTuple):
     changed: bool
 
 
-def decide(opinion: Opinion, say: RulesSay) -> dict[str, Decided]:
+def decide(opinion: Opinion, say: RuleValues) -> dict[str, Decided]:
     """The value of every field that somebody has one for."""
     found = {}
     for key in FIELDS:
@@ -100,7 +100,7 @@ def fused(reading: Reading, opinion: Opinion) -> Reading:
     """
     if not reading.crash.unnumbered:
         return reading
-    decided = decide(opinion, rules_say(reading))
+    decided = decide(opinion, rule_values(reading))
     crash, taken = with_contact(reading.crash, decided), []
     if crash is not reading.crash:
         taken = [_fact(key, decided[key]) for key in _NEEDED]
@@ -130,7 +130,7 @@ def model_fact(field: str, value: FactValue, p: float, told: bool = False, nats:
 def _touched(crash: CrashFacts, one: Decided) -> CrashFacts:
     if not meeting(crash):
         return crash
-    return replace(crash, near_crash=None if one.value else NearFacts())
+    return replace(crash, near_crash=None if one.value else NearCrashFacts())
 
 
 def _subject(crash: CrashFacts, one: Decided) -> CrashFacts:
@@ -195,7 +195,7 @@ def with_contact(crash: CrashFacts, decided: Mapping[str, Decided]) -> CrashFact
     )
     rest = tuple(v for v in crash.vehicles if v.id not in (SUBJECT, _PARTNER))
     contact = _contact(cast("Area", value["subject_area"]), cast("Area", value["other_area"]))
-    near = None if value["touched"] else NearFacts()
+    near = None if value["touched"] else NearCrashFacts()
     return replace(crash, vehicles=(me, them, *rest), contacts=(contact,), near_crash=near, gap=None)
 
 

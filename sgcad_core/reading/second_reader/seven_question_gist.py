@@ -63,7 +63,7 @@ def shown_alike(one: Value, other: Value) -> bool:
     return alike(one, other) or any({one, other} <= some for some in _SHOWN)
 
 
-class RulesSay(NamedTuple):
+class RuleValues(NamedTuple):
     """The rules' value of every field that they have one for, and the fields that the text tells outright."""
 
     values: Mapping[str, Value]
@@ -87,7 +87,7 @@ def areas(contact: ContactFacts) -> tuple[Area, Area]:
     return (mine, theirs) if contact.striker == SUBJECT else (theirs, mine)
 
 
-def rules_say(reading: Reading) -> RulesSay:
+def rule_values(reading: Reading) -> RuleValues:
     """Of a reading. Without a contact of the subject nothing is said of the other one."""
     crash, junction = reading.crash, reading.roads.junction
     values: dict[str, Value] = {"junction": junction.kind not in ("none", "parking_lot")}
@@ -99,7 +99,7 @@ def rules_say(reading: Reading) -> RulesSay:
         more, sure = _of_contact(crash, contact)
         values |= more
         told |= sure
-    return RulesSay(values, frozenset(told))
+    return RuleValues(values, frozenset(told))
 
 
 def _of_contact(crash: CrashFacts, contact: ContactFacts) -> tuple[dict[str, Value], set[str]]:

@@ -31,7 +31,7 @@ def area_of(words: str) -> Zone | None:
 
 
 # ------------------------------------------------------------------ one form
-def plain(told: Statement, who: Roster) -> str:
+def plain(told: Statement, roster: Roster) -> str:
     """The sentence with possessives turned round: "V1's left side" -> "the left side of V1"."""
     text = rule("zones.plural_number").sub(r"V\1's", told.text)
     text = rule("zones.trailer_of_number").sub(r"\1", text)
@@ -40,15 +40,15 @@ def plain(told: Statement, who: Roster) -> str:
     text = rule("zones.possessive").sub(lambda m: f"the {m['area']} of {m['v']}", text)
     text = rule("zones.bare_possessive").sub(r"the \g<area> of \g<v>", text)
     text = rule("zones.area_of_the_vehicle").sub(_of_subject(told), text)
-    return rule("zones.its_area").sub(lambda m: _its(m, told, text, who), text)
+    return rule("zones.its_area").sub(lambda m: _its(m, told, text, roster), text)
 
 
 def _of_subject(told: Statement) -> str:
     return rf"\g<area> of {told.subject}" if told.subject else r"\g<0>"
 
 
-def _its(match: re.Match[str], told: Statement, text: str, who: Roster) -> str:
-    starts = [subjects for at, _, subjects in subject_starts(told._replace(text=text), who) if at < match.start()]
+def _its(match: re.Match[str], told: Statement, text: str, roster: Roster) -> str:
+    starts = [subjects for at, _, subjects in subject_starts(told._replace(text=text), roster) if at < match.start()]
     owner = starts[-1][0] if starts and starts[-1] else told.subject
     return f"the {match['area']} of {owner}" if owner else match.group()
 

@@ -7,7 +7,7 @@ are brought to the words that other reports use, so that everything behind reads
 from __future__ import annotations
 
 from sgcad_core.reading.language import of_role, rule
-from sgcad_core.reading.text.traced_text import Traced
+from sgcad_core.reading.text.traced_text import TracedText
 
 
 def tells_study(text: str) -> bool:
@@ -15,7 +15,7 @@ def tells_study(text: str) -> bool:
     return bool(rule("near_names.study").search(text))
 
 
-def named_in_full(text: Traced) -> Traced:
+def named_in_full(text: TracedText) -> TracedText:
     """The normalized text with articles and nouns for everybody; unchanged where it is no study's."""
     if not tells_study(text.text):
         return text

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.text.traced_text import Traced
+from sgcad_core.reading.text.traced_text import TracedText
 
 _FEWEST_MARKS = 3
 """Below, boxes and sections are somebody's punctuation."""
@@ -20,7 +20,7 @@ def is_form(text: str) -> bool:
     return len(rule("forms.mark").findall(text)) >= _FEWEST_MARKS
 
 
-def account(text: Traced) -> Traced:
+def account(text: TracedText) -> TracedText:
     """The text without a form's own lines; characters keep their places. What is no form stays as it is."""
     return text.sub(rule("forms.line"), _told) if is_form(text.text) else text
 

@@ -16,7 +16,7 @@ from sgcad_core.reading.language import of_role, rule, values
 from sgcad_core.reading.text.driving_study_style import named_in_full
 from sgcad_core.reading.text.first_person import in_third_person
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, Role, role_of
-from sgcad_core.reading.text.traced_text import Traced, joined
+from sgcad_core.reading.text.traced_text import TracedText, joined
 
 __all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalised", "normalize", "sentences", "split_sentences"]
 NUMBERS: dict[str, int] = values("number_word")
@@ -60,21 +60,21 @@ def normalize(text: str) -> str:
 
     Paragraphs stay apart ("\\n\\n"); everything else is single-spaced. normalize(normalize(t)) == normalize(t).
     """
-    return normalised(Traced.of(text)).text
+    return normalised(TracedText.of(text)).text
 
 
-def normalised(text: Traced) -> Traced:
+def normalised(text: TracedText) -> TracedText:
     """`normalize` of a text whose characters know their places; only its first `MOST_READ` characters are read."""
     return joined([p for p in map(_paragraph, _blocks(text.cut(0, MOST_READ))) if p.text], "\n\n")
 
 
-def _blocks(text: Traced) -> list[Traced]:
+def _blocks(text: TracedText) -> list[TracedText]:
     """Paragraphs: a line break counts where a sentence ended before it or the line is empty."""
     plain = text.translate(_CHARACTERS)
     return plain.sub(rule("text.space_at_end"), "\n").split(rule("text.paragraph"))
 
 
-def _paragraph(block: Traced) -> Traced:
+def _paragraph(block: TracedText) -> TracedText:
     once = _spell(block)
     for _ in range(4):
         again = _spell(once)
@@ -84,7 +84,7 @@ def _paragraph(block: Traced) -> Traced:
     return once
 
 
-def _spell(text: Traced) -> Traced:
+def _spell(text: TracedText) -> TracedText:
     text = _spaces(text).sub(rule("text.typo"), _mend_typo)
     for spelling in of_role("spelling"):
         text = text.sub(spelling, spelling.yields["to"])
@@ -97,7 +97,7 @@ def _spell(text: Traced) -> Traced:
     return _spaces(text)
 
 
-def _spaces(text: Traced) -> Traced:
+def _spaces(text: TracedText) -> TracedText:
     """Single spaces, one full stop at a time, a space behind it and behind commas."""
     text = text.sub(rule("common.space"), " ").sub(rule("text.full_stops"), ".")
     text = text.sub(rule("text.space_before_mark"), r"\1").sub(rule("text.glued_sentence"), ". ")
@@ -122,10 +122,10 @@ def _mend_lanes(match: re.Match[str]) -> str:
 
 def sentences(text: str) -> tuple[Sentence, ...]:
     """The sentences of a report as it was written, in order, with roles; vehicles without numbers get some."""
-    return split_sentences(normalised(Traced.of(text)))
+    return split_sentences(normalised(TracedText.of(text)))
 
 
-def split_sentences(text: Traced) -> tuple[Sentence, ...]:
+def split_sentences(text: TracedText) -> tuple[Sentence, ...]:
     """The sentences of a normalized text; those who have no number get one."""
     found: list[Sentence] = []
     numbered = number_parked(number_cyclists(number_actors(named_in_full(in_third_person(text)))))
@@ -136,8 +136,8 @@ def split_sentences(text: Traced) -> tuple[Sentence, ...]:
     return tuple(found)
 
 
-def _split(block: Traced) -> list[Traced]:
-    pieces: list[Traced] = []
+def _split(block: TracedText) -> list[TracedText]:
+    pieces: list[TracedText] = []
     for part in block.split(rule("text.end")):
         last = pieces[-1].text[-_TAIL:] if pieces else ""
         ended = last.lower().endswith((" dr.", " st.")) or rule("text.road_closed").search(last)
@@ -150,7 +150,7 @@ def _split(block: Traced) -> list[Traced]:
     return [cut for piece in pieces for raw in _cut(piece) if (cut := raw.strip()).text]
 
 
-def _cut(sentence: Traced) -> list[Traced]:
+def _cut(sentence: TracedText) -> list[TracedText]:
     """Pieces of bearable length: no report has such a sentence, and patterns take quadratic time on it."""
     if len(sentence.text) <= LONGEST:
         return [sentence]

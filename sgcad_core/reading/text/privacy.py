@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from sgcad_core.reading.language import of_role, rule
-from sgcad_core.reading.text.traced_text import Traced, joined
+from sgcad_core.reading.text.traced_text import TracedText, joined
 
 _PERSON_ONLY = rule("privacy.person_only")
 _CRASH = rule("privacy.crash")
@@ -21,10 +21,10 @@ _PERSON = rule("privacy.person")
 
 def redact(text: str) -> str:
     """The narrative without persons: sentences about people alone dropped, ages, sexes and names replaced."""
-    return redacted(Traced.of(text)).text
+    return redacted(TracedText.of(text)).text
 
 
-def redacted(text: Traced) -> Traced:
+def redacted(text: TracedText) -> TracedText:
     """`redact` of a text whose characters know their places."""
     out = joined(list(_parts_without_persons(text.split(rule("privacy.sentence_end")))))
     out = out.sub(rule("privacy.age"), lambda m: f"{m.group('the') or 'a '}person ").sub(
@@ -41,7 +41,7 @@ def redacted(text: Traced) -> Traced:
     return out.sub(rule("privacy.space_before_mark"), r"\1").strip()
 
 
-def _parts_without_persons(sentences: Iterable[Traced]) -> Iterator[Traced]:
+def _parts_without_persons(sentences: Iterable[TracedText]) -> Iterator[TracedText]:
     """Sentences without persons; where one goes that named the vehicle, the next one's "he" or "she" names it.
 
     Of one about the driver whom a study watched it stays that he drives: all that follows is about him, be it in the
@@ -65,7 +65,7 @@ def _parts_without_persons(sentences: Iterable[Traced]) -> Iterator[Traced]:
         yield kept
 
 
-def _without_persons(sentence: Traced) -> Traced:
+def _without_persons(sentence: TracedText) -> TracedText:
     """A sentence without the clauses that tell of persons alone; its end mark and line break stay."""
     if not _PERSON_ONLY.search(sentence.text):
         return sentence

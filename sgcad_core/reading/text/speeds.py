@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import Motion
+from sgcad_core.reading.motion.motion_record import VehicleMotion
 
 FASTEST_MPH = 120.0
 """The most that is read as a vehicle's speed and driven; the fastest of known reports has 100."""
@@ -47,13 +47,13 @@ def _mph(m: re.Match[str], factor: float) -> int:
     return round(min(FASTEST_MPH, (float(m.group("a")) + float(high)) / 2 * factor))
 
 
-def read_speed(motion: Motion, text: str, weight: int) -> None:
+def read_speed(motion: VehicleMotion, text: str, weight: int) -> None:
     """The first speed of a segment."""
     if found := next(speeds(text), None):
-        motion.heard(motion.speeds_mph, weight, found.mph, found.words, found.rule)
+        motion.add_value(motion.speeds_mph, weight, found.mph, found.words, found.rule)
 
 
-def read_speeds_beside(motions: Mapping[str, Motion], told: Sequence[Statement]) -> None:
+def read_speeds_beside(motions: Mapping[str, VehicleMotion], told: Sequence[Statement]) -> None:
     """Speeds of those whose own segments tell none: of a sentence that names nobody else, or right behind the name."""
     lacking = {v for v, motion in motions.items() if not motion.speeds_mph}
     for t in told:
@@ -61,7 +61,7 @@ def read_speeds_beside(motions: Mapping[str, Motion], told: Sequence[Statement])
             if vehicle in lacking:
                 motion = motions[vehicle]
                 motion.at = t.number
-                motion.heard(motion.speeds_mph, 1, speed.mph, speed.words, speed.rule)
+                motion.add_value(motion.speeds_mph, 1, speed.mph, speed.words, speed.rule)
 
 
 def _owned(told: Statement) -> Iterator[tuple[str, Speed]]:

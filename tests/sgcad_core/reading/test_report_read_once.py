@@ -18,7 +18,7 @@ from sgcad_core.reading.language.data import vocabulary
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.text.normalise import normalize
 from sgcad_core.reading.text.privacy import redacted
-from sgcad_core.reading.text.traced_text import Traced, placed, runs
+from sgcad_core.reading.text.traced_text import TracedText, placed, runs
 from sgcad_core.settings import ROOT
 
 TEXT = (
@@ -51,7 +51,7 @@ def test_a_fact_points_to_its_sentence_as_it_was_written():
 
 
 def test_redaction_moves_no_place():
-    bare = redacted(Traced.of(TEXT))
+    bare = redacted(TracedText.of(TEXT))
     assert "45" not in bare.text
     found = {f.field: f for f in read(placed(bare.text, runs(bare))).facts}
     assert sentence(TEXT, found["contacts.0.struck"]) == "The front of V1 struck the left side of V2."

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from sgcad_core.case.records import CrashReport
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.second_reader.fuse_gist import decide, fused, model_right
-from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, alike, areas, meeting, rules_say
+from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, alike, areas, meeting, rule_values
 from sgcad_core.records.second_reader import Heard, Opinion, Weights
 
 TEXT = (
@@ -85,7 +85,7 @@ def test_a_contact_that_the_rules_cannot_read_is_filled_in_by_a_sure_model_alone
 
 
 def test_what_both_say_alike_is_the_rules_value_with_the_share_of_agreement() -> None:
-    say = rules_say(read(TEXT))
+    say = rule_values(read(TEXT))
     found = decide(opinion({"subject": Weights(agree=0.97)}, subject="parked"), say)["subject"]
     assert (found.value, found.p, found.changed) == ("stopped", 0.97, False)
     assert alike("straight", "slowing")

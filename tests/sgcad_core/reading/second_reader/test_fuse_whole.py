@@ -11,7 +11,7 @@ from sgcad_core.reading.behavior.behavior import behavior_of_facts
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.reading import Reading, read
 from sgcad_core.reading.second_reader.answered_claims import model_claims
-from sgcad_core.reading.second_reader.answered_facts import Taken, facts_of
+from sgcad_core.reading.second_reader.answered_facts import TakenValue, facts_of
 from sgcad_core.reading.second_reader.field_claims import KINDS, UNKNOWN_P, Claim, rules_claim
 from sgcad_core.reading.second_reader.fuse_whole import SURE, agree, decided, same, whole
 from sgcad_core.records.second_reader import Answered, Opinion, Weights
@@ -120,7 +120,7 @@ def test_taken_values_are_facts_by_the_names_of_the_rules() -> None:
 
 def test_facts_of_a_contact_name_who_and_with_which_side() -> None:
     crash = read(TEXT).crash
-    one = partial(Taken, p=0.9, told=0.9, nats=1.0)
+    one = partial(TakenValue, p=0.9, told=0.9, nats=1.0)
     found = [*facts_of("contact", one(("V2", "V1")), crash), *facts_of("areas", one((("V1", "left"),)), crash)]
     assert [(fact.field, fact.value) for fact in found] == [
         ("contacts.0.striker", "V2"), ("contacts.0.struck", "V1"), ("contacts.0.striker_area", "left"),

@@ -16,7 +16,7 @@ from sgcad_core.reading.second_reader import learned_reader
 from sgcad_core.reading.second_reader.fuse_gist import decide, fused
 from sgcad_core.reading.second_reader.learned_reader import Field, Learned, contest, hashed, known
 from sgcad_core.reading.second_reader.learned_reader_features import account_of, readings, runs, words
-from sgcad_core.reading.second_reader.seven_question_gist import rules_say, shown_alike
+from sgcad_core.reading.second_reader.seven_question_gist import rule_values, shown_alike
 from sgcad_core.records.second_reader import WEIGHTS
 
 TEXT = (
@@ -62,7 +62,7 @@ def test_a_sure_reader_wins_and_an_unsure_one_tells_how_sure_the_rules_are() -> 
     assert unsure is not None
     assert unsure.heard["subject"].value == "stopped"
     assert fused(reading, unsure) is reading
-    decided = decide(unsure, rules_say(reading))["subject"]
+    decided = decide(unsure, rule_values(reading))["subject"]
     assert (decided.p, decided.changed) == (unsure.heard["subject"].p, False)
     assert decided.p < 0.5
 
