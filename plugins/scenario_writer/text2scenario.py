@@ -24,7 +24,8 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.kinds import DRIVEWAY, RAMP
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.motion.motion_record import Access
 from sgcad_core.reading.text.compass import angle_of
 from sgcad_core.records.specs import (

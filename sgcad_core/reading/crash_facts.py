@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from sgcad_core.reading.actors.pedestrians_objects import OtherFacts, others
+from sgcad_core.reading.actors.people_objects import OtherFacts, WalkDirection, others, side_facing
 from sgcad_core.reading.actors.vehicles import VehicleDescription
-from sgcad_core.reading.actors.walkers import WalkDirection, side_facing
+from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.inference.gaps import Gap
-from sgcad_core.reading.inference.inference_state import AREAS, CrashInferred, CrashTold, end_of
+from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold, end_of
 from sgcad_core.reading.motion.maneuvers import meant_turn, started_from_stop
 from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
 from sgcad_core.reading.text.conditions import Conditions
@@ -63,23 +63,6 @@ class VehicleFacts:
     def standing(self) -> bool:
         """Whether it does not move before the contact."""
         return self.maneuver in ("stopped", "parked")
-
-
-@dataclass(frozen=True)
-class ContactFacts:
-    """One contact; `struck` may be an object or other road user of `CrashFacts.others`."""
-
-    striker: str
-    struck: str
-    striker_area: Area
-    struck_area: Area
-    areas_stated: bool
-    """Whether the text names both sides, and no corner."""
-    stated: bool = True
-    """False: the pair is inferred, the text tells no contact."""
-    striker_may: tuple[Area, ...] = AREAS
-    """Sides that the text allows: both of a corner, all four where it names none."""
-    struck_may: tuple[Area, ...] = AREAS
 
 
 @dataclass(frozen=True)
@@ -146,18 +129,18 @@ def _told_before_stop(motion: VehicleMotion, inferred: CrashInferred, vehicle: s
 
 
 def _without_vehicle(
-    crash_told: CrashTold, inferred: CrashInferred, beside: tuple[OtherFacts, ...]
+    crash: CrashTold, inferred: CrashInferred, beside: tuple[OtherFacts, ...]
 ) -> tuple[ContactFacts, ...]:
     """What vehicles hit that has no number: objects with the front unless told, people on the side from which they are
     met as they go, their left one where that is not told."""
     ids = {o.word: o for o in beside}
     found: dict[str, ContactFacts] = {}
-    for mention in crash_told.contact_mentions:
+    for mention in crash.contact_mentions:
         other = ids.get(mention.other)
         if other and other.id not in found:
             area = end_of(mention.actor_area) or "front"
             faces = (
-                side_facing(crash_told.walks.get(mention.other, WalkDirection()), inferred.headings.get(mention.actor))
+                side_facing(crash.walks.get(mention.other, WalkDirection()), inferred.headings.get(mention.actor))
                 or "left"
             )
             side: Area = "front" if other.kind == "object" else faces
@@ -185,14 +168,12 @@ def _subject_first(
     return vehicles, (mine, *(c for c in contacts if c is not mine))
 
 
-def crash_of(crash_told: CrashTold, inferred: CrashInferred, sky: Conditions) -> CrashFacts:
+def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions) -> CrashFacts:
     """The crash that was read (`crash_told`) and what follows from it. A text that names no vehicle gives none."""
-    vehicles = tuple(_vehicle(v, crash_told.motions[v.id], inferred) for v in crash_told.roster.vehicles)
-    beside = others(
-        crash_told.contact_mentions, crash_told.roster.ids, sum(v.beside for v in crash_told.roster.vehicles)
-    )
-    contacts = tuple(ContactFacts(*c) for c in inferred.contacts) or _without_vehicle(crash_told, inferred, beside)
-    if crash_told.roster.counted:
+    vehicles = tuple(_vehicle(v, crash.motions[v.id], inferred) for v in crash.roster.vehicles)
+    beside = others(crash.contact_mentions, crash.roster.ids, sum(v.beside for v in crash.roster.vehicles))
+    contacts = tuple(inferred.contacts) or _without_vehicle(crash, inferred, beside)
+    if crash.roster.counted:
         vehicles, contacts = _subject_first(vehicles, contacts)
     return CrashFacts(
         vehicles,
@@ -201,16 +182,16 @@ def crash_of(crash_told: CrashTold, inferred: CrashInferred, sky: Conditions) ->
         sky.light,
         sky.weather,
         sky.surface or _SURFACE.get(sky.weather),
-        near_crash=_near(crash_told) if contacts else None,
-        courses=crash_told.course.courses,
-        impacts=tuple(read.impact for read in crash_told.impacts),
+        near_crash=_near(crash) if contacts else None,
+        courses=crash.course.courses,
+        impacts=tuple(read.impact for read in crash.impacts),
         oriented=bool(inferred.stated),
-        unnumbered=crash_told.roster.counted,
+        unnumbered=crash.roster.counted,
     )
 
 
-def _near(crash_told: CrashTold) -> NearCrashFacts | None:
-    near = crash_told.near
+def _near(crash: CrashTold) -> NearCrashFacts | None:
+    near = crash.near
     if near is None:
         return None
     evasions = tuple((e.vehicle, e.maneuver) for e in near.evasions)

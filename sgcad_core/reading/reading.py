@@ -17,11 +17,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from sgcad_core.reading.actors.people_objects import walk_of
 from sgcad_core.reading.actors.references import has_actor_numbers
 from sgcad_core.reading.actors.rename_ids import renamed
 from sgcad_core.reading.actors.vehicles import Roster, read_roster
-from sgcad_core.reading.actors.walkers import walk_of
-from sgcad_core.reading.contacts.contact_telling import ContactMention
+from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.contacts.contacts import contact_mentions
 from sgcad_core.reading.contacts.crash_course import CoursesRead, acting_segments, courses_told
 from sgcad_core.reading.contacts.crash_roles import role_facts
@@ -36,14 +36,17 @@ from sgcad_core.reading.motion.clauses import Segment, Statement, resolve_senten
 from sgcad_core.reading.motion.motion_reader import read_motions
 from sgcad_core.reading.motion.motion_record import ManeuverCue, VehicleMotion
 from sgcad_core.reading.motion.signal_states import SignalState, SignalTold, signal_states
-from sgcad_core.reading.provenance.course_provenance import course_provenance
-from sgcad_core.reading.provenance.crash_provenance import FactBuilder, StageResults, crash_provenance
+from sgcad_core.reading.provenance.crash_provenance import (
+    FactBuilder,
+    StageResults,
+    course_provenance,
+    crash_provenance,
+)
 from sgcad_core.reading.provenance.road_provenance import road_provenance
 from sgcad_core.reading.roads.road_facts import RoadFacts, roads_of
 from sgcad_core.reading.text.conditions import Conditions, conditions
-from sgcad_core.reading.text.driving_study_style import tells_study
-from sgcad_core.reading.text.forms import account
 from sgcad_core.reading.text.normalise import Sentence, normalised, split_sentences
+from sgcad_core.reading.text.report_styles import account, tells_study
 from sgcad_core.reading.text.traced_text import TracedText
 from sgcad_core.records.edits import Edit
 from sgcad_core.records.facts import Fact

@@ -11,10 +11,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from sgcad_core.reading.actors.pedestrians_objects import OtherFacts
+from sgcad_core.reading.actors.people_objects import OtherFacts
+from sgcad_core.reading.contacts.contact_records import AREAS, ContactFacts
 from sgcad_core.reading.contacts.near_crash import NearCrashFacts
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
-from sgcad_core.reading.inference.inference_state import AREAS
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.motion.absolute_headings import turned_vehicle
 from sgcad_core.reading.roads.road_facts import RoadFacts
 from sgcad_core.reading.text.compass import between

@@ -166,3 +166,42 @@ class Numbering:
 
     def introduced(self, words: str, number: str) -> str:
         return f"{words} {number}"
+
+
+def number_cyclists(text: TracedText) -> TracedText:
+    """A text that numbers V1 alone with everybody on a bicycle numbered from V2 on; all others stay as they are.
+
+    Of several numbered vehicles the words alone do not tell whom a cyclist met: those texts stay as well.
+    """
+    if {m.group() for m in rule("common.vehicle").finditer(text.text)} != {"V1"}:
+        return text
+    v1 = Actor(1, "vehicle", set(), subject=True)
+    return numbered(text, _Cyclists(NamedActors([v1], automated=True)))
+
+
+class _Cyclists(Numbering):
+    """Numbers cyclists alone, and marks them as numbered here; no phrase of a vehicle means V1 or anybody else."""
+
+    def is_nobody(self, phrase: Phrase) -> bool:
+        return phrase.kind != "bicycle" or not phrase.match["user"] or super().is_nobody(phrase)
+
+    def introduced(self, words: str, number: str) -> str:
+        return f"{'An' if words[0].isupper() else 'an'} unnumbered {words.partition(' ')[2]} {number}"
+
+
+def number_parked(text: TracedText) -> TracedText:
+    """A numbered text with the one parked vehicle that somebody hits and that has no number given the next one."""
+    named = list(rule("references.parked").finditer(text.text))
+    hits = {m.start("who") for m in rule("references.parked_hit").finditer(text.text)}
+    hit = next((m.start() for m in named if m.start() in hits), None)
+    if hit is None or not has_actor_numbers(text.text):
+        return text
+    number = max(int(m.group()[1:]) for m in rule("common.vehicle").finditer(text.text)) + 1
+    return text.sub(rule("references.parked"), lambda m: _parked(m, f"V{number}", m.start() - hit))
+
+
+def _parked(match: re.Match[str], id: str, behind: int) -> str:
+    """The number; where it is hit first (`behind` 0) with the words that describe it; another one stays as it is."""
+    if behind == 0:
+        return f"an unnumbered {match['what']} ({id}), which was parked"
+    return id if behind > 0 and match["det"].lower() == "the" else match.group()

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from sgcad_core.errors import Refused
 from sgcad_core.kinds import RAMP
+from sgcad_core.reading.behavior.added_objects import in_gore, with_roadside
 from sgcad_core.reading.behavior.exit_assignment import Placed, assign, square_rad
-from sgcad_core.reading.behavior.gore_actors import in_gore
 from sgcad_core.reading.behavior.lane_choice import lane_of
-from sgcad_core.reading.behavior.roadside_objects import with_roadside
+from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.contacts.near_crash import NearCrashFacts
-from sgcad_core.reading.crash_facts import FROM_STOP_MPH, ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.crash_facts import FROM_STOP_MPH, CrashFacts, VehicleFacts
 from sgcad_core.reading.layout.road_ways import Way
 from sgcad_core.records.specs import (  # fmt: skip
     SIZE_M,

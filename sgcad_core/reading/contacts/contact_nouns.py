@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from sgcad_core.reading.contacts import contact_words as says
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.text.area_phrases import Zone, area_of
 
@@ -32,7 +31,12 @@ _NOTHING = rule("contact_nouns.nothing")
 
 def touches(text: str) -> Iterator[NounContact]:
     """Every contact that nouns tell in a sentence, in the order of their certainty."""
-    told = (says.BETWEEN, says.BOTH_PARTS, rule("contact_nouns.named"), rule("contact_nouns.caused"))
+    told = (
+        rule("contact_words.between"),
+        rule("contact_words.both_parts"),
+        rule("contact_nouns.named"),
+        rule("contact_nouns.caused"),
+    )
     for m in (m for pattern in told for m in pattern.finditer(text)):
         if not _NOTHING.search(text[: m.start()]):
             front = "front" if rule("contact_nouns.head_on").match(text[m.end() :]) else None
@@ -40,7 +44,7 @@ def touches(text: str) -> Iterator[NounContact]:
     for m in rule("contact_nouns.between_thing").finditer(text):
         if not _NOTHING.search(text[: m.start()]):
             yield NounContact(m["v"] or m["v2"], m["object"].lower(), _maybe(m["area"] or m["area2"]), None, "between")
-    for m in says.PUSHED.finditer(text):
+    for m in rule("contact_words.pushed").finditer(text):
         a, b, area = next((m[v], m[w], m[z]) for v, w, z in _PUSHES if m[v])
         yield NounContact(a, b, "front", _maybe(area) or "back", "pushed")
     for m in rule("contact_nouns.received").finditer(text):
@@ -70,7 +74,7 @@ def involved(text: str) -> Iterator[NounContact]:
 def door_of(actor: str, before: str, scope: str) -> str | None:
     """The door or mirror that struck `actor`, in words, where a sentence does not say whose: then it is another's."""
     part = rule("contact.a_part").search(before)
-    struck = says.ACTIVE_OBJECT.match(scope) if part else None
+    struck = rule("contact_words.active_object").match(scope) if part else None
     return part["area"] if part and struck and struck["v"] == actor else None
 
 
@@ -82,7 +86,7 @@ def paired_areas(scope: str) -> tuple[Zone | None, Zone | None] | None:
     """Both areas of "front to left side" and of "head-on", the subject's first."""
     if rule("contact_nouns.head_on").match(scope):
         return "front", "front"
-    pair = says.PAIRED.search(scope)
+    pair = rule("contact_words.paired").search(scope)
     if not pair or pair.start() > 60 or "with" in pair.group():
         return None
     return _maybe(pair["a1"]), _maybe(pair["a2"])
@@ -90,8 +94,8 @@ def paired_areas(scope: str) -> tuple[Zone | None, Zone | None] | None:
 
 def struck_pair(scope: str, area: Zone | None, other_area: Zone | None) -> tuple[Zone | None, Zone | None]:
     """ "V2 was struck by V1, front to left side": the front, where only one is, belongs to the striking vehicle."""
-    against = says.AGAINST.search(scope)
-    by = says.BY.search(scope)
+    against = rule("contact_words.against").search(scope)
+    by = rule("contact_words.by").search(scope)
     if against and by and by["v"] == against["v1"]:
         return _maybe(against["a2"]), _maybe(against["a1"])
     pair = None if against or area or other_area else paired_areas(scope)
@@ -108,7 +112,7 @@ def _strikes_first(pair: tuple[Zone | None, Zone | None]) -> bool:
 def is_noun(before: str, word: str, behind: str) -> bool:
     """ "the impact", "at impact", "of contact": no verb."""
     nouns = ("impact", "contact", "hit", "impacts", "contacts", "hits", "strike")
-    if word.lower() not in nouns or says.CAUSED.search(before):
+    if word.lower() not in nouns or rule("contact_words.caused").search(before):
         return False
     return bool(rule("contact.noun_before").search(before))
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from sgcad_core.reading.actors.pedestrians_objects import is_person
-from sgcad_core.reading.contacts.contact_telling import ContactMention
+from dataclasses import replace
+
+from sgcad_core.reading.actors.people_objects import is_person
+from sgcad_core.reading.contacts.contact_records import AREAS, ContactFacts, ContactMention
 from sgcad_core.reading.inference.inference_state import (
-    AREAS,
     TURN_DEG,
     CrashInferred,
     CrashTold,
-    InferredContact,
     apart,
     end_of,
     is_sideswipe,
@@ -23,51 +23,47 @@ _SIDLING = ("lane_change_left", "lane_change_right", "merge", "overtaking")
 _BENT = ("turn_left", "turn_right", "u_turn", *_SIDLING)
 
 
-def infer_contacts(
-    crash_told: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]
-) -> list[InferredContact]:
-    if not pairs and crash_told.roster.counted and crash_told.contact_mentions:
+def infer_contacts(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> list[ContactFacts]:
+    if not pairs and crash.roster.counted and crash.contact_mentions:
         return []  # the report tells what was touched, and it is no vehicle
     if not pairs and any(
-        mention.other not in crash_told.roster.ids and is_person(mention.other)
-        for mention in crash_told.contact_mentions
+        mention.other not in crash.roster.ids and is_person(mention.other) for mention in crash.contact_mentions
     ):
         return []  # somebody without a number was hit; the vehicles are not told to have touched
-    if not pairs and len(crash_told.roster.ids) >= 2:
-        a, b = crash_told.roster.ids[:2]
-        if crash_told.contact_mentions and frozenset((a, b)) in crash_told.missed:
+    if not pairs and len(crash.roster.ids) >= 2:
+        a, b = crash.roster.ids[:2]
+        if crash.contact_mentions and frozenset((a, b)) in crash.missed:
             return []  # one of both struck something else
-        return [
-            _join(crash_told, inferred, ContactMention(a, b, None, None, 0, "impact", mutual=True))._replace(told=False)
-        ]
-    return [_join(crash_told, inferred, mention) for mention in pairs]
+        guess = ContactMention(a, b, None, None, 0, "impact", mutual=True)
+        return [replace(_join(crash, inferred, guess), stated=False)]
+    return [_join(crash, inferred, mention) for mention in pairs]
 
 
-def _join(crash_told: CrashTold, inferred: CrashInferred, mention: ContactMention) -> InferredContact:
+def _join(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) -> ContactFacts:
     """Striker first: the one that hits with its front where the other does not, or backs into it."""
     told = all(zone is not None and "/" not in zone for zone in (mention.actor_area, mention.other_area))
     a, b = mention.actor, mention.other
-    area_a, area_b = _corners(crash_told, inferred, mention)
-    if crash_told.roster.counted and not (area_a and area_b):
+    area_a, area_b = _corners(crash, inferred, mention)
+    if crash.roster.counted and not (area_a and area_b):
         area_a, area_b = _brushed(inferred, mention, area_a, area_b)
     if area_a is None and area_b is None and is_sideswipe(mention):
         area_a, area_b = _sideswiped(inferred, a, b)
     if mention.mutual and area_a is None and area_b is None and _less_of_a_striker(inferred, a, b):
         a, b = b, a
-    if area_a is None and area_b is None and (caught := _caught_up(crash_told, a, b)):
+    if area_a is None and area_b is None and (caught := _caught_up(crash, a, b)):
         a, b, area_a, area_b = *caught, "front", "back"
     area_a, area_b = complete_areas(inferred, a, b, area_a, area_b)
     leads_b = area_b == "front" and area_a != "front" and not _backs_into(inferred, a, area_a)
     if leads_b or (_backs_into(inferred, b, area_b) and _standing(inferred, a)):
         a, b, area_a, area_b = b, a, area_b, area_a
     may = {mention.actor: _allowed(mention.actor_area), mention.other: _allowed(mention.other_area)}
-    return InferredContact(a, b, area_a, area_b, told, True, may[a], may[b])
+    return ContactFacts(a, b, area_a, area_b, told, True, may[a], may[b])
 
 
-def _caught_up(crash_told: CrashTold, a: str, b: str) -> tuple[str, str] | None:
+def _caught_up(crash: CrashTold, a: str, b: str) -> tuple[str, str] | None:
     """Striker and struck where the codes say that one came from behind with more speed."""
     for struck, striker in ((a, b), (b, a)):
-        if crash_told.motions[struck].has_cue("code:hit_from_behind"):
+        if crash.motions[struck].has_cue("code:hit_from_behind"):
             return striker, struck
     return None
 
@@ -106,13 +102,11 @@ def _sideswiped(inferred: CrashInferred, a: str, b: str) -> tuple[Area, Area]:
     return ("left", "right") if a_goes_left else ("right", "left")
 
 
-def _corners(
-    crash_told: CrashTold, inferred: CrashInferred, mention: ContactMention
-) -> tuple[Area | None, Area | None]:
+def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) -> tuple[Area | None, Area | None]:
     """Each corner as its end or its flank: the flank where the paths cross and the other hits with its front."""
     turn = between(inferred.headings[mention.actor], inferred.headings[mention.other])
     pair = (mention.actor, mention.other)
-    skidding = any(crash_told.motions[v].has_cue("lost_control", 3) for v in pair) and turn == 0
+    skidding = any(crash.motions[v].has_cue("lost_control", 3) for v in pair) and turn == 0
     bent = skidding or turn % 180 != 0 or any(inferred.maneuvers[v] in _BENT for v in pair)
     zones = {mention.actor: mention.actor_area, mention.other: mention.other_area}
     areas: dict[str, Area | None] = {}

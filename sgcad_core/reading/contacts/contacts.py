@@ -10,9 +10,8 @@ import re
 from collections.abc import Iterable
 from dataclasses import replace
 
+from sgcad_core.reading.actors.people_objects import with_people
 from sgcad_core.reading.actors.vehicles import MENTION, Roster
-from sgcad_core.reading.actors.walkers import with_people
-from sgcad_core.reading.contacts import contact_words as says
 from sgcad_core.reading.contacts.contact_nouns import (
     NounContact,
     door_of,
@@ -24,7 +23,7 @@ from sgcad_core.reading.contacts.contact_nouns import (
     together,
     touches,
 )
-from sgcad_core.reading.contacts.contact_telling import ContactMention
+from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement, subject_starts
 from sgcad_core.reading.text.area_phrases import Zone, area_by, area_if_told, area_of, plain
@@ -64,7 +63,7 @@ def _sentence(told: Statement, roster: Roster) -> list[ContactMention]:
     found: list[ContactMention] = []
     starts = subject_starts(told._replace(text=text), roster)
     for m in HIT.finditer(text):
-        if any(p.start() < m.start() <= p.end() for p in says.BOTH_PARTS.finditer(text)):
+        if any(p.start() < m.start() <= p.end() for p in rule("contact_words.both_parts").finditer(text)):
             continue
         mention = _contact_mention(told, text, m, starts, roster)
         if mention:
@@ -109,17 +108,23 @@ def _contact_mention(
     told: Statement, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], roster: Roster
 ) -> ContactMention | None:
     before, behind = text[: m.start()], text[m.end() :]
-    passive = bool(says.PASSIVE.search(before)) and not rule("contact.made_contact").match(m.group())
+    passive = bool(rule("contact_words.passive").search(before)) and not rule("contact.made_contact").match(m.group())
     passive = passive or bool(rule("contact.reduced").match(m.group() + behind))
-    befell = says.TO_HIT.search(before) or (roster.counted and rule("near_events.unavoidable").search(before))
-    if not befell and (says.NEAR_MISS.search(before) or is_noun(before, m.group(), behind)):
+    befell = rule("contact_words.to_hit").search(before) or (
+        roster.counted and rule("near_events.unavoidable").search(before)
+    )
+    if not befell and (rule("contact_words.near_miss").search(before) or is_noun(before, m.group(), behind)):
         return None
     nxt = HIT.search(behind)
     scope = behind[: nxt.start()] if nxt else behind
-    thing = (says.THING_WAS.search(before) or says.PERSON_WAS.search(before)) if passive else None
+    thing = (
+        (rule("contact_words.thing_was").search(before) or rule("contact_words.person_was").search(before))
+        if passive
+        else None
+    )
     if thing:
         return _thing_hit(told, thing, scope, m.group())
-    if not passive and roster.counted and (moves := says.THING_MOVES.search(before)):
+    if not passive and roster.counted and (moves := rule("contact_words.thing_moves").search(before)):
         return _hit_by_thing(told, moves, scope, m.group(), roster)
     subjects = _subjects(told, before, m, starts)
     if not subjects:
@@ -147,7 +152,7 @@ def _meant_by_pronoun(told: Statement, actor: str, scope: str, roster: Roster) -
 
 def _thing_hit(told: Statement, thing: re.Match[str], scope: str, verb: str) -> ContactMention | None:
     """ "A tree was struck by the front of V1"."""
-    by = says.BY.search(scope)
+    by = rule("contact_words.by").search(scope)
     if not by:
         return None
     area = area_if_told(by["area"])
@@ -168,7 +173,7 @@ def _subjects(
     told: Statement, before: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]]
 ) -> tuple[str, ...]:
     """The vehicles whose verb this is."""
-    caused = says.CAUSED.search(before)
+    caused = rule("contact_words.caused").search(before)
     if caused:
         return (caused["v"],)
     fitting = [s for at, _, s in starts if at < m.start()]
@@ -184,8 +189,8 @@ def _active(
     told: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
 ) -> ContactMention | None:
     pair = paired_areas(scope)
-    scope = _clause(says.ASIDE.sub(" ", scope))
-    own = says.WITH_ITS.search(scope)
+    scope = _clause(rule("contact_words.aside").sub(" ", scope))
+    own = rule("contact_words.with_its").search(scope)
     if own and rule("contact.made_contact").match(verb) and rule("contact.touched").match(scope):
         own = None  # "made contact with the left door": whose door it is stands elsewhere
     area = area_of(own["area"]) if own else area
@@ -207,7 +212,7 @@ def _active(
 
 def _area_against_area(mention: ContactMention, scope: str) -> ContactMention:
     """The blow with the areas of "the left side of V1 against the right side of V2" behind its verb."""
-    met = says.AGAINST.search(scope)
+    met = rule("contact_words.against").search(scope)
     if not met or {met["v1"], met["v2"]} != {mention.actor, mention.other}:
         return mention
     zones = {met["v1"]: area_if_told(met["a1"]), met["v2"]: area_if_told(met["a2"])}
@@ -217,21 +222,25 @@ def _area_against_area(mention: ContactMention, scope: str) -> ContactMention:
 def _clause(scope: str) -> str:
     """Up to the end of the clause, but at least as far as the first vehicle behind the verb."""
     first = MENTION.search(scope)
-    end = says.CLAUSE_END.search(scope, first.end() if first and first.start() < 70 else 0)
+    end = rule("contact_words.clause_end").search(scope, first.end() if first and first.start() < 70 else 0)
     return scope[: end.start()] if end else scope
 
 
 def _object(told: Statement, actor: str, scope: str, roster: Roster) -> tuple[str | None, Zone | None]:
     """What was hit, and where."""
-    m = says.ACTIVE_OBJECT.match(scope)
-    thing = says.OBJECT.match(scope)
+    m = rule("contact_words.active_object").match(scope)
+    thing = rule("contact_words.object").match(scope)
     if m and not (thing and thing.end() < m.start("v") and thing["object"].lower() != "trailer"):
         area = area_if_told(m["area"]) or _area_behind(scope[m.end() :])
         return _not_itself(m["v"], actor, roster, told), area
     if thing and thing["object"].lower() not in ("trailer", "parked"):
         return thing["object"].lower(), None
-    if says.PRONOUN_OBJECT.match(scope) or says.THE_AREA.match(scope) or rule("contact.nothing").match(scope):
-        only = says.THE_AREA.match(scope)
+    if (
+        rule("contact_words.pronoun_object").match(scope)
+        or rule("contact_words.the_area").match(scope)
+        or rule("contact.nothing").match(scope)
+    ):
+        only = rule("contact_words.the_area").match(scope)
         return _the_other(told, actor, roster), area_if_told(only["area"]) if only else _area_behind(scope) or _damaged(
             told, roster
         )
@@ -239,7 +248,7 @@ def _object(told: Statement, actor: str, scope: str, roster: Roster) -> tuple[st
     if late and late.group() != actor and late.start() < 60:
         named = rule("contact.area_of_vehicle").given(vehicle=late.group()).search(scope)
         return late.group(), area_if_told(named["area"]) if named else _area_behind(scope[late.end() :])
-    anything = says.ANY_OBJECT.match(scope) if roster.counted else None
+    anything = rule("contact_words.any_object").match(scope) if roster.counted else None
     return (anything["object"].lower(), None) if anything else (None, None)
 
 
@@ -253,7 +262,7 @@ def _the_other(told: Statement, actor: str, roster: Roster) -> str | None:
 
 def _damaged(told: Statement, roster: Roster) -> Zone | None:
     """ "The left side of V2 was damaged when V1 contacted it": the area that the sentence begins with."""
-    found = says.DAMAGED.match(plain(told, roster))
+    found = rule("contact_words.damaged").match(plain(told, roster))
     return area_of(found["area"]) if found else None
 
 
@@ -268,20 +277,22 @@ def _area_behind(text: str) -> Zone | None:
     """ "... in the left side", "... in the center of the rear bumper": the first phrase that names a side."""
     near = rule("contact.area_ends").split(_clause(text)[:80])[0]
     areas = [area_of(m["area"]) for m in rule("contact.owned_area").finditer(near)]
-    return next(filter(None, areas), None) if says.ON_THE.search(near) else None
+    return next(filter(None, areas), None) if rule("contact_words.on_the").search(near) else None
 
 
 def _passive(
     told: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
 ) -> ContactMention | None:
-    by = says.BY.search(scope)
-    where = says.ON_THE.search(scope[: by.start()] if by else scope) or rule("contact.area_first").match(scope)
+    by = rule("contact_words.by").search(scope)
+    where = rule("contact_words.on_the").search(scope[: by.start()] if by else scope) or rule(
+        "contact.area_first"
+    ).match(scope)
     area = area or (area_of(where["area"]) if where else None)
     other = by["v"] if by else roster.other(actor)
     if by and rule("contact.by_stranger").search(scope[: by.start()]):
         return None
     other_area = area_if_told(by["area"]) if by else area_by(scope)
-    own = says.WITH_ITS.search(scope[by.end() :] if by else scope)
+    own = rule("contact_words.with_its").search(scope[by.end() :] if by else scope)
     other_area = other_area or (area_of(own["area"]) if own else None)
     if rule("contact.rear_end").match(verb) or rule("contact.from_behind").search(scope):
         area, other_area = area or "back", other_area or "front"
@@ -295,17 +306,17 @@ def _passive(
 
 def _mutual(told: Statement, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> ContactMention:
     """ "V1 and V2 collided front to front"."""
-    against = says.AGAINST.search(scope)
+    against = rule("contact_words.against").search(scope)
     if against:
         zones = {against["v1"]: area_if_told(against["a1"]), against["v2"]: area_if_told(against["a2"])}
         first, second = zones.get(subjects[0]), zones.get(subjects[1])
         return ContactMention(
             subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True
         )
-    pair = says.PAIRED.search(scope)
+    pair = rule("contact_words.paired").search(scope)
     first, second = (area_if_told(pair["a1"]), area_if_told(pair["a2"])) if pair else (None, None)
     if not pair:
-        both = says.WITH_ITS.search(scope) or says.OF_BOTH.search(before)
+        both = rule("contact_words.with_its").search(scope) or rule("contact_words.of_both").search(before)
         first = second = area_of(both["area"]) if both else None
     if rule("contact.head_on").search(scope):
         first = second = "front"

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from sgcad_core.reading.actors.vehicles import Roster
-from sgcad_core.reading.contacts.contact_telling import ContactMention
+from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.contacts.crash_course import UNREAD, CoursesRead, ImpactRead
 from sgcad_core.reading.inference.inference_state import end_of
 from sgcad_core.reading.language import of_role, rule

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from sgcad_core.reading.actors.vehicles import Roster
-from sgcad_core.reading.contacts.contact_telling import ContactMention
+from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.contacts.contacts import contact_mentions
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.text.forms import is_form
 from sgcad_core.reading.text.normalise import Sentence
+from sgcad_core.reading.text.report_styles import is_form
 
 _FEWEST_WORDS = 12
 """Below, the share of small words says nothing."""

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
-from sgcad_core.reading.inference.inference_state import AREAS
+from sgcad_core.reading.contacts.contact_records import AREAS, ContactFacts
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.text.compass import turned
 from sgcad_core.records.specs import Maneuver
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from sgcad_core.reading.contacts.contact_records import ContactMention, with_areas
 from sgcad_core.reading.contacts.contact_sides import infer_contacts
-from sgcad_core.reading.contacts.contact_telling import ContactMention, with_areas
 from sgcad_core.reading.inference.inference_state import QUARTER_DEG, CrashInferred, CrashTold, end_of
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.maneuvers import (
@@ -27,39 +27,39 @@ from sgcad_core.reading.text.compass import between, turned
 from sgcad_core.records.specs import Area, Compass, Maneuver
 
 
-def infer_crash(crash_told: CrashTold) -> CrashInferred:
+def infer_crash(crash: CrashTold) -> CrashInferred:
     """Decide everything that the text allows to decide."""
     out = CrashInferred()
-    pairs = _vehicle_contacts(crash_told)
-    _stated_headings(crash_told, out)
-    for v in crash_told.roster.ids:
-        motion = crash_told.motions[v]
-        _maneuver(out, v, decide(motion, _areas_hit(v, pairs), _same_way_turn(crash_told, out, v)))
+    pairs = _vehicle_contacts(crash)
+    _stated_headings(crash, out)
+    for v in crash.roster.ids:
+        motion = crash.motions[v]
+        _maneuver(out, v, decide(motion, _areas_hit(v, pairs), _same_way_turn(crash, out, v)))
         if motion.speeds_mph:
             out.speeds[v] = _take(out, f"{v} speed", motion.speeds_mph)
-    _turned_headings(crash_told, out)
-    _faced_headings(crash_told, out)
-    _still_moving(crash_told, out, pairs)
-    _change_hands(crash_told, out, pairs)
-    _mend_headings(crash_told, out, pairs)
-    _complete_headings(crash_told, out, pairs)
-    out.exits = {v: e for v in crash_told.roster.ids if (e := _exit(crash_told.motions[v], out, v)) is not None}
-    out.contacts = infer_contacts(crash_told, out, pairs)
+    _turned_headings(crash, out)
+    _faced_headings(crash, out)
+    _still_moving(crash, out, pairs)
+    _change_hands(crash, out, pairs)
+    _mend_headings(crash, out, pairs)
+    _complete_headings(crash, out, pairs)
+    out.exits = {v: e for v in crash.roster.ids if (e := _exit(crash.motions[v], out, v)) is not None}
+    out.contacts = infer_contacts(crash, out, pairs)
     return out
 
 
-def _still_moving(crash_told: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
+def _still_moving(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
     """In a near crash one who comes to a stop is seen to slow; only who stood all the time stands."""
-    pair = {name for b in pairs[:1] for name in (b.actor, b.other)} or set(crash_told.roster.ids[:2])
-    for v in sorted(pair) if crash_told.near else ():
+    pair = {name for b in pairs[:1] for name in (b.actor, b.other)} or set(crash.roster.ids[:2])
+    for v in sorted(pair) if crash.near else ():
         source = inferred.sources.get(f"{v} maneuver")
         if inferred.maneuvers[v] == "stopped" and source and rule("near_events.came_to_stop").match(source.words):
             inferred.maneuvers[v] = "slowing"
 
 
-def _turned_headings(crash_told: CrashTold, inferred: CrashInferred) -> None:
+def _turned_headings(crash: CrashTold, inferred: CrashInferred) -> None:
     """Who had turned before the crash heads where it is told to go since, else where the turn led."""
-    for v, motion in crash_told.motions.items():
+    for v, motion in crash.motions.items():
         turn = turned_before(motion, inferred.maneuvers[v])
         if turn is None or v not in inferred.headings:
             continue
@@ -74,9 +74,9 @@ def _turned_headings(crash_told: CrashTold, inferred: CrashInferred) -> None:
             inferred.stated.discard(v)
 
 
-def _faced_headings(crash_told: CrashTold, inferred: CrashInferred) -> None:
+def _faced_headings(crash: CrashTold, inferred: CrashInferred) -> None:
     """Of an account in order: who backs heads where it was last told to face, whatever way it had come before."""
-    for v, motion in crash_told.motions.items():
+    for v, motion in crash.motions.items():
         faced = [(source.number, what.removeprefix("faces "), source) for what, source in motion.sources.items()
                  if what.startswith("faces ")]  # fmt: skip
         if motion.ordered and faced and inferred.maneuvers[v] == "backing":
@@ -85,10 +85,10 @@ def _faced_headings(crash_told: CrashTold, inferred: CrashInferred) -> None:
             inferred.stated.add(v)
 
 
-def _change_hands(crash_told: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
+def _change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
     """Of a change of lane to a hand that nobody tells: towards the flank by which the two touched, away from a lane
     that is told."""
-    for v in crash_told.roster.ids:
+    for v in crash.roster.ids:
         source = inferred.sources.get(f"{v} maneuver")
         if (
             inferred.maneuvers[v] != "lane_change_left"
@@ -102,13 +102,13 @@ def _change_hands(crash_told: CrashTold, inferred: CrashInferred, pairs: list[Co
         if (
             "right" in (own or "").split("/")
             or "left" in (other or "").split("/")
-            or crash_told.motions[v].lane_word == "left"
+            or crash.motions[v].lane_word == "left"
         ):
             inferred.maneuvers[v] = "lane_change_right"
 
 
-def _stated_headings(crash_told: CrashTold, inferred: CrashInferred) -> None:
-    for v, motion in crash_told.motions.items():
+def _stated_headings(crash: CrashTold, inferred: CrashInferred) -> None:
+    for v, motion in crash.motions.items():
         turned_in = motion.exits and changed_lanes_after_turn(motion)
         if motion.headings or turned_in:
             inferred.headings[v] = (
@@ -134,9 +134,9 @@ def _maneuver(inferred: CrashInferred, vehicle: str, decision: Decision) -> None
         inferred.sources[f"{vehicle} maneuver"] = decision.cue.source
 
 
-def _same_way_turn(crash_told: CrashTold, inferred: CrashInferred, vehicle: str) -> Maneuver:
+def _same_way_turn(crash: CrashTold, inferred: CrashInferred, vehicle: str) -> Maneuver:
     """Which turn brings a vehicle into the direction of the other: right, unless it came from the left."""
-    other = crash_told.roster.other(vehicle)
+    other = crash.roster.other(vehicle)
     if (
         other
         and {vehicle, other} <= inferred.stated
@@ -146,9 +146,9 @@ def _same_way_turn(crash_told: CrashTold, inferred: CrashInferred, vehicle: str)
     return "turn_right"
 
 
-def _vehicle_contacts(crash_told: CrashTold) -> list[ContactMention]:
+def _vehicle_contacts(crash: CrashTold) -> list[ContactMention]:
     """Contacts between numbered vehicles, one a pair, each completed from its other tellings."""
-    hits = [b for b in crash_told.contact_mentions if b.other in crash_told.roster.ids]
+    hits = [b for b in crash.contact_mentions if b.other in crash.roster.ids]
     found: list[ContactMention] = []
     for i, mention in enumerate(hits):
         if all({mention.actor, mention.other} != {b.actor, b.other} for b in found):
@@ -170,29 +170,29 @@ def _exit(motion: VehicleMotion, inferred: CrashInferred, vehicle: str) -> Compa
 
 
 # ------------------------------------------------------------------ headings
-def _complete_headings(crash_told: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
+def _complete_headings(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
     """Headings of vehicles that have none, from a partner that has; V1 heads north if nothing is told."""
-    ids = crash_told.roster.ids
+    ids = crash.roster.ids
     if not ids:
         return
     if not inferred.headings:
-        _from_exits(crash_told, inferred)
+        _from_exits(crash, inferred)
     if not inferred.headings:
         inferred.headings[ids[0]] = "N"
     for _ in ids:
         for v in ids:
-            partner = _partner(v, inferred.headings, pairs, crash_told)
+            partner = _partner(v, inferred.headings, pairs, crash)
             if v not in inferred.headings and partner:
-                turn = relative(crash_told, inferred, partner, v, pairs)
+                turn = relative(crash, inferred, partner, v, pairs)
                 inferred.headings[v] = turned(inferred.headings[partner], turn)
 
 
-def _mend_headings(crash_told: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
+def _mend_headings(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
     """A told heading that both the told exit and the sides that touched contradict was a slip: the opposite one."""
     for v in sorted(inferred.stated):
         side = QUARTER_DEG.get(inferred.maneuvers[v])
-        exits = crash_told.motions[v].exits
-        partner = _partner(v, inferred.headings, pairs, crash_told)
+        exits = crash.motions[v].exits
+        partner = _partner(v, inferred.headings, pairs, crash)
         if side is None or not exits or partner not in inferred.stated or partner is None:
             continue
         if all(between(turned(inferred.headings[v], side), e) == 180 for e in exits):
@@ -202,18 +202,16 @@ def _mend_headings(crash_told: CrashTold, inferred: CrashInferred, pairs: list[C
                 inferred.stated.discard(v)
 
 
-def _from_exits(crash_told: CrashTold, inferred: CrashInferred) -> None:
+def _from_exits(crash: CrashTold, inferred: CrashInferred) -> None:
     """A vehicle that turned left to go west had come from the south."""
-    for v in crash_told.roster.ids:
-        exits, maneuver = crash_told.motions[v].exits, inferred.maneuvers[v]
+    for v in crash.roster.ids:
+        exits, maneuver = crash.motions[v].exits, inferred.maneuvers[v]
         if exits and maneuver in ("turn_left", "turn_right"):
             inferred.headings[v] = turned(exits[0], 90 if maneuver == "turn_left" else -90)
             return
 
 
-def _partner(
-    vehicle: str, known: Mapping[str, Compass], pairs: list[ContactMention], crash_told: CrashTold
-) -> str | None:
+def _partner(vehicle: str, known: Mapping[str, Compass], pairs: list[ContactMention], crash: CrashTold) -> str | None:
     """The vehicle that tells most of this one's heading: the first that it touched, else one that it is told to drive
     beside, else any."""
     for b in pairs:
@@ -221,5 +219,5 @@ def _partner(
             other = b.other if b.actor == vehicle else b.actor
             if other in known:
                 return other
-    beside = (other for _, relation, other, _ in crash_told.motions[vehicle].relations if relation == "same")
-    return next((v for v in (*beside, *crash_told.roster.ids) if v in known and v != vehicle), None)
+    beside = (other for _, relation, other, _ in crash.motions[vehicle].relations if relation == "same")
+    return next((v for v in (*beside, *crash.roster.ids) if v in known and v != vehicle), None)

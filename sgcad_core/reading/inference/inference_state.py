@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple, get_args
 
+from sgcad_core.reading.actors.people_objects import WalkDirection
 from sgcad_core.reading.actors.vehicles import Roster
-from sgcad_core.reading.actors.walkers import WalkDirection
-from sgcad_core.reading.contacts.contact_telling import ContactMention
+from sgcad_core.reading.contacts.contact_records import ContactFacts, ContactMention
 from sgcad_core.reading.contacts.crash_course import CoursesRead, ImpactRead
 from sgcad_core.reading.contacts.near_crash import NearMiss
 from sgcad_core.reading.motion.motion_record import Source, VehicleMotion
@@ -45,23 +44,6 @@ class CrashTold:
     """Pairs that the text tells to have nearly touched."""
 
 
-AREAS: tuple[Area, ...] = get_args(Area)
-
-
-class InferredContact(NamedTuple):
-    """A contact with all areas; whether both areas (and no corner), and whether the contact itself was told."""
-
-    striker: str
-    struck: str
-    striker_area: Area
-    struck_area: Area
-    areas_told: bool
-    told: bool
-    striker_may: tuple[Area, ...] = AREAS
-    """Sides that the words allow: both of a corner, all where none is told."""
-    struck_may: tuple[Area, ...] = AREAS
-
-
 @dataclass
 class CrashInferred:
     """What follows."""
@@ -74,7 +56,7 @@ class CrashInferred:
     sources: dict[str, Source] = field(default_factory=dict)
     """Where "V1 heading", "V1 maneuver" and "V1 speed" were read, as far as they were."""
     speeds: dict[str, int] = field(default_factory=dict)
-    contacts: list[InferredContact] = field(default_factory=list)
+    contacts: list[ContactFacts] = field(default_factory=list)
 
 
 def end_of(zone: Zone | None) -> Area | None:

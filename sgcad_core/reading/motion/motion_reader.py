@@ -9,14 +9,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from sgcad_core.reading.actors.unnumbered_actors import PARTS
-from sgcad_core.reading.actors.vehicles import Roster, VehicleDescription
-from sgcad_core.reading.language import rule
+from sgcad_core.reading.actors.vehicles import MENTION, Roster, VehicleDescription
+from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
-from sgcad_core.reading.motion.critical_events import read_critical_event
-from sgcad_core.reading.motion.headings import note_headings_of_mentions, read_heading
+from sgcad_core.reading.motion.heading_lane_cues import (
+    note_headings_of_mentions,
+    read_heading,
+    read_lane,
+    read_origin_and_target,
+    read_relations,
+)
 from sgcad_core.reading.motion.maneuver_cues import read_maneuver_cues
-from sgcad_core.reading.motion.motion_record import VehicleMotion
-from sgcad_core.reading.motion.surroundings import read_lane, read_origin_and_target, read_relations
+from sgcad_core.reading.motion.motion_record import ManeuverCue, VehicleMotion
 from sgcad_core.reading.text.sentence_roles import HIT, Role
 from sgcad_core.reading.text.speeds import read_speed, read_speeds_beside
 
@@ -125,3 +129,35 @@ def _until_hit(text: str) -> str:
 def _until_rest(text: str) -> str:
     cut = rule("motion_reader.rest").search(text)
     return text[: cut.start()] if cut else text
+
+
+def read_critical_event(found: dict[str, VehicleMotion], told: Statement, roster: Roster) -> None:
+    text = told.text.lower()
+    if not rule("critical_events.event").search(text):
+        return
+    named = [v for v in MENTION.findall(told.text) if v in roster.ids]
+    owner = named[0] if named else told.subject
+    if owner not in found or rule("critical_events.uncoded").match(text):
+        return
+    if rule("critical_events.other_vehicle").search(text):
+        _other_code(found, owner, text, told.number, roster)
+    else:
+        for event in of_role("own_event"):
+            if code := event.search(text):
+                found[owner].cues.append(
+                    ManeuverCue(f"code:{event.yields['deed']}", 2, told.number, code.group(), event.id)
+                )
+
+
+def _other_code(found: dict[str, VehicleMotion], owner: str, text: str, number: int, roster: Roster) -> None:
+    other = roster.other(owner)
+    for event in of_role("others_event"):
+        if not (code := event.search(text)):
+            continue
+        what = event.yields
+        if "kin" in what:
+            for me, you in ((owner, other), (other, owner)) if other else ((owner, other),):
+                if me:
+                    found[me].relations.append((3, what["kin"], you, "code"))
+        elif who_did := (owner if what["whom"] == "self" else other):
+            found[who_did].cues.append(ManeuverCue(f"code:{what['deed']}", 2, number, code.group(), event.id))

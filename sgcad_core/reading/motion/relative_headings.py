@@ -6,7 +6,7 @@ Evidence is added up: relation words, critical events, maneuvers, and which side
 from __future__ import annotations
 
 from sgcad_core.kinds import RAMP
-from sgcad_core.reading.contacts.contact_telling import ContactMention
+from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.inference.inference_state import (
     HIT_FROM,
     CrashInferred,
@@ -22,22 +22,22 @@ from sgcad_core.records.specs import Area
 QUARTERS = (0, 90, 180, 270)
 
 
-def relative(crash_told: CrashTold, inferred: CrashInferred, a: str, b: str, pairs: list[ContactMention]) -> int:
+def relative(crash: CrashTold, inferred: CrashInferred, a: str, b: str, pairs: list[ContactMention]) -> int:
     """Most plausible heading of b minus that of a, clockwise quarters, by adding up evidence."""
     score = dict.fromkeys(QUARTERS, 0.0)
     score[180] += 0.1
-    _add_relations(score, crash_told, a, b)
-    _add_maneuvers(score, crash_told, inferred, a, b)
+    _add_relations(score, crash, a, b)
+    _add_maneuvers(score, crash, inferred, a, b)
     mention = next((x for x in pairs if {a, b} == {x.actor, x.other}), None)
     if mention:
         score[0] += 0.5 if is_sideswipe(mention) else 0.0  # five in six sideswipes are of two who drive the same way
-        if not (_on_foot(crash_told, a, b) and {mention.actor_area, mention.other_area} <= {"front", None}):
+        if not (_on_foot(crash, a, b) and {mention.actor_area, mention.other_area} <= {"front", None}):
             _add_contact(score, inferred, a, b, mention)  # a front meets people whichever way they walk
     return max(QUARTERS, key=lambda q: score[q])
 
 
-def _on_foot(crash_told: CrashTold, a: str, b: str) -> bool:
-    return any(v.kind == "pedestrian" for v in crash_told.roster.vehicles if v.id in (a, b))
+def _on_foot(crash: CrashTold, a: str, b: str) -> bool:
+    return any(v.kind == "pedestrian" for v in crash.roster.vehicles if v.id in (a, b))
 
 
 def contact_prefers(inferred: CrashInferred, a: str, b: str, pairs: list[ContactMention], turn: int) -> bool:
@@ -49,23 +49,23 @@ def contact_prefers(inferred: CrashInferred, a: str, b: str, pairs: list[Contact
     return score.get(turn % 360, 0.0) > score.get((turn + 180) % 360, 0.0)
 
 
-def _add_relations(score: dict[int, float], crash_told: CrashTold, a: str, b: str) -> None:
+def _add_relations(score: dict[int, float], crash: CrashTold, a: str, b: str) -> None:
     for me, you in ((a, b), (b, a)):
-        for weight, relation, other, words in crash_told.motions[me].relations:
-            if other == you and not (words == "behind" and _on_foot(crash_told, a, b)):  # "ran from behind V2"
+        for weight, relation, other, words in crash.motions[me].relations:
+            if other == you and not (words == "behind" and _on_foot(crash, a, b)):  # "ran from behind V2"
                 for q in {"same": (0,), "opposite": (180,), "crossing": (90, 270)}[relation]:
                     score[q] += 0.6 * weight
     for me, sign in ((a, 1), (b, -1)):
-        side = crash_told.motions[me].from_side
+        side = crash.motions[me].from_side
         if side:
             quarter = 270 if (side == "left") == (sign == 1) else 90
             score[quarter] += 1.5
 
 
-def _add_maneuvers(score: dict[int, float], crash_told: CrashTold, inferred: CrashInferred, a: str, b: str) -> None:
+def _add_maneuvers(score: dict[int, float], crash: CrashTold, inferred: CrashInferred, a: str, b: str) -> None:
     for me in (a, b):
-        motion, maneuver = crash_told.motions[me], inferred.maneuvers[me]
-        if maneuver == "parked" and not _on_foot(crash_told, a, b):
+        motion, maneuver = crash.motions[me], inferred.maneuvers[me]
+        if maneuver == "parked" and not _on_foot(crash, a, b):
             score[0] += 2.5
             score[180] += 2.0
         if maneuver == "crossing_centerline":
@@ -77,18 +77,18 @@ def _add_maneuvers(score: dict[int, float], crash_told: CrashTold, inferred: Cra
             score[270] += 1.0
         if motion.target and maneuver == "turn_left":
             score[180] += 0.5
-    _add_kinds(score, crash_told, inferred, a, b)
+    _add_kinds(score, crash, inferred, a, b)
     into = {"code:into_opposite": 90, "code:into_same": 270}
     for me, sign in ((a, 1), (b, -1)):
         for code, quarter in into.items():
-            if crash_told.motions[me].has_cue(code):
+            if crash.motions[me].has_cue(code):
                 turning_right = inferred.maneuvers[me] == "turn_right"
                 score[(sign * (90 if turning_right else quarter)) % 360] += 1.5
 
 
-def _add_kinds(score: dict[int, float], crash_told: CrashTold, inferred: CrashInferred, a: str, b: str) -> None:
+def _add_kinds(score: dict[int, float], crash: CrashTold, inferred: CrashInferred, a: str, b: str) -> None:
     """How riders and people on foot come where nothing tells it."""
-    kinds = {v.id: v.kind for v in crash_told.roster.vehicles}
+    kinds = {v.id: v.kind for v in crash.roster.vehicles}
     for me, you in ((a, b), (b, a)):
         if inferred.maneuvers[me] == "turn_right" and kinds[you] == "bicycle" and kinds[me] != "bicycle":
             score[0] += 1.0  # a right turn cuts off who rides beside it, seldom who comes the other way

@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from sgcad_core.reading.actors.vehicles import VehicleDescription
-from sgcad_core.reading.contacts.contact_telling import ContactMention
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts, ContactMention
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
 from sgcad_core.reading.motion.maneuvers import meant_turn
 from sgcad_core.reading.motion.motion_record import Source, WeightedValue
 from sgcad_core.reading.text.normalise import Sentence
+from sgcad_core.records.course import CourseTold
 from sgcad_core.records.facts import Fact, Value
 from sgcad_core.records.specs import Area
 
@@ -218,3 +219,35 @@ def _conditions(builder: FactBuilder, read: StageResults) -> Iterator[Fact]:
             yield builder.stated(f"conditions.{name}", value, read.sky[name])
         else:
             yield builder.inferred(f"conditions.{name}", value, "surface follows weather", read.sky.get("weather"))
+
+
+_REST = ("facing_deg", "where", "side", "attitude", "against")
+_PLAIN = ("lost_control", "spin", "spin_deg", "rolls")
+
+
+def course_provenance(builder: FactBuilder, crash: CrashTold) -> Iterator[Fact]:
+    """Facts of every vehicle's course, then of what else was hit, in order."""
+    for vehicle, course in crash.course.courses.items():
+        for name, value, told_as in _course_values(course):
+            source = crash.course.sources.get(f"{vehicle} {told_as}")
+            yield builder.stated(f"vehicles.{vehicle}.{name}", value, source)
+    for number, (impact, source) in enumerate(crash.impacts):
+        for name in ("actor", "other", "actor_area", "other_area"):
+            if (told := getattr(impact, name)) is not None:
+                yield builder.stated(f"impacts.{number}.{name}", told, source)
+
+
+def _course_values(course: CourseTold) -> Iterator[tuple[str, Value, str]]:
+    """(field, value, where its source stands) of what is told."""
+    if course.brakes:
+        yield "evasion.brakes", True, "brakes"
+    if course.steers:
+        yield "evasion.steers", course.steers, "steers"
+    if course.no_evasion and not (course.brakes or course.steers):
+        yield "evasion.none", True, "no_evasion"
+    for name in _PLAIN:
+        if value := getattr(course, name):
+            yield name, value, name
+    for name in _REST:
+        if (value := getattr(course.rest, name)) is not None:
+            yield f"rest.{name}", value, f"rest.{name}"

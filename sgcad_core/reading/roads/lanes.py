@@ -11,10 +11,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from sgcad_core.reading.language import rule, values
+from sgcad_core.reading.language import of_role, rule, values
 from sgcad_core.reading.motion.motion_record import Source
-from sgcad_core.reading.roads.median import divided_and_median
-from sgcad_core.reading.roads.turn_lanes import spelled_out
 from sgcad_core.reading.text.compass import WORDS
 from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.records.specs import Compass, Median
@@ -221,3 +219,30 @@ def _count(items: list[_Item]) -> int:
     turning = sum(max(i.count, len(i.turn)) for i in items if i.turn)
     beside = sum(max(i.count, len(i.turn)) for i in items if i.turn and not i.inside)
     return max(plain, through + turning) if plain and through else max(plain + through + beside, turning)
+
+
+def divided_and_median(text: str) -> tuple[bool | None, Median | None]:
+    """Whether the road is said to be divided, and by what; painted lines alone do not divide."""
+    if rule("median.undivided").search(text):
+        return False, None
+    text = rule("median.elsewhere").sub(" ", text)
+    kind = next((told.yields["median"] for told in of_role("median_kind") if told.search(text)), None)
+    said = bool(rule("median.divided").search(rule("median.painted_line").sub(" ", text)))
+    if kind == "painted":
+        return said or None, kind
+    if said or (kind and rule("median.median_word").search(text)):
+        return True, kind
+    return None, None
+
+
+_IN_EACH = rule("turn_lanes.in_each")
+"""Not "in the lane for left-turning traffic": somebody may wait there."""
+
+
+def spelled_out(text: str) -> str:
+    """Normalized text with its turn lanes in plain words: "a lane for left turns" is a left-turn lane, and of "two
+    lanes and a left turn lane in each direction" both are told for each direction."""
+    for lane in of_role("lane_for_turns"):
+        text = lane.sub(r"\2-turn lane\1", text)
+    text = rule("turn_lanes.only").sub(r"\1-turn \2", text)
+    return _IN_EACH.sub(r"\1 lanes in each direction with a \2-turn lane in each direction", text)

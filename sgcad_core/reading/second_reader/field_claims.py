@@ -13,14 +13,16 @@ from itertools import product
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sgcad_core.kinds import JOINING
-from sgcad_core.reading.inference.inference_state import AREAS, QUARTER_DEG
+from sgcad_core.reading.contacts.contact_records import AREAS
+from sgcad_core.reading.inference.inference_state import QUARTER_DEG
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.text.compass import turned
 from sgcad_core.records.specs import Compass, Leg
 
 if TYPE_CHECKING:
-    from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+    from sgcad_core.reading.contacts.contact_records import ContactFacts
+    from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
     from sgcad_core.reading.reading import Reading
     from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
     from sgcad_core.records.course import CourseTold

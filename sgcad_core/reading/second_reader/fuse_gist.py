@@ -18,8 +18,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from sgcad_core.kinds import FOUR_LEG, Maneuver
+from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.contacts.near_crash import NearCrashFacts
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.second_reader.seven_question_gist import (
     FIELDS,
     SUBJECT,

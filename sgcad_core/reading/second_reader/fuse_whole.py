@@ -15,15 +15,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, T
-from sgcad_core.reading.actors.pedestrians_objects import OtherFacts
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.actors.people_objects import OtherFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.layout.answered_layout import carries, junction_of, legs_added, short_of_told
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.roads.lanes import LaneFacts
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts, uncounted
 from sgcad_core.reading.roads.road_mentions import axis_of
-from sgcad_core.reading.second_reader.answered_claims import model_claims
-from sgcad_core.reading.second_reader.answered_facts import TakenValue, as_taken, controlled, facts_of
+from sgcad_core.reading.second_reader.answered_values import TakenValue, as_taken, controlled, facts_of, model_claims
 from sgcad_core.reading.second_reader.field_claims import Claim, Claims, kind_of, rules_claim, vehicles_of
 from sgcad_core.reading.second_reader.fuse_gist import FILLS, TURNS, model_right
 from sgcad_core.records.facts import Fact

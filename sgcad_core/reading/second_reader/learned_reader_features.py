@@ -23,7 +23,7 @@ from sgcad_core.reading.second_reader.seven_question_gist import (
     partner,
     rule_values,
 )
-from sgcad_core.reading.text.driving_study_style import tells_study
+from sgcad_core.reading.text.report_styles import tells_study
 from sgcad_core.reading.text.traced_text import TracedText
 
 _PAIRS = (
@@ -86,9 +86,9 @@ def runs(found: Iterable[str]) -> set[str]:
     return {one for one in found if one.startswith("U:") and "_" in one}
 
 
-def _contact_at(crash_told: CrashTold) -> int | None:
-    mine = [b.number for b in crash_told.contact_mentions if SUBJECT in (b.actor, b.other)] or [
-        b.number for b in crash_told.contact_mentions
+def _contact_at(crash: CrashTold) -> int | None:
+    mine = [b.number for b in crash.contact_mentions if SUBJECT in (b.actor, b.other)] or [
+        b.number for b in crash.contact_mentions
     ]
     return mine[0] if mine else None
 
@@ -158,9 +158,9 @@ def _cue_features(account: Account) -> Iterator[str]:
         yield from (f"{tag}last={kind}" for kind in cues[-1:])
 
 
-def _contact_features(crash_told: CrashTold) -> Iterator[str]:
-    mine = [b for b in crash_told.contact_mentions if SUBJECT in (b.actor, b.other)]
-    yield f"blows={min(len(crash_told.contact_mentions), 3)}/{min(len(mine), 3)}"
+def _contact_features(crash: CrashTold) -> Iterator[str]:
+    mine = [b for b in crash.contact_mentions if SUBJECT in (b.actor, b.other)]
+    yield f"blows={min(len(crash.contact_mentions), 3)}/{min(len(mine), 3)}"
     for mention in mine[:_BLOWS]:
         acts = mention.actor == SUBJECT
         sides: tuple[Any, Any] = (

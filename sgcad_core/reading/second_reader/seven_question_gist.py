@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from pydantic import Field
 
 from sgcad_core.kinds import Maneuver
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts
+from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.records.answer_schema import Spec
 from sgcad_core.records.second_reader import Value
 from sgcad_core.records.specs import ActorKind, Area

@@ -9,12 +9,9 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from sgcad_core.reading.actors.cyclists import number_cyclists
-from sgcad_core.reading.actors.parked import number_parked
-from sgcad_core.reading.actors.references import number_actors
+from sgcad_core.reading.actors.references import number_actors, number_cyclists, number_parked
 from sgcad_core.reading.language import of_role, rule, values
-from sgcad_core.reading.text.driving_study_style import named_in_full
-from sgcad_core.reading.text.first_person import in_third_person
+from sgcad_core.reading.text.report_styles import in_third_person, named_in_full
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, Role, role_of
 from sgcad_core.reading.text.traced_text import TracedText, joined
 

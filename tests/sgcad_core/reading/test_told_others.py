@@ -6,7 +6,7 @@ import pytest
 
 from sgcad_core.reading.actors.makes import kind_of
 from sgcad_core.reading.reading import crash_facts, read
-from sgcad_core.reading.roads.median import divided_and_median
+from sgcad_core.reading.roads.lanes import divided_and_median
 from sgcad_core.records.specs import ActorKind
 
 

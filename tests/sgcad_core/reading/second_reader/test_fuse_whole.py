@@ -10,8 +10,7 @@ from sgcad_core.case.records import CrashReport
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.reading import Reading, read
-from sgcad_core.reading.second_reader.answered_claims import model_claims
-from sgcad_core.reading.second_reader.answered_facts import TakenValue, facts_of
+from sgcad_core.reading.second_reader.answered_values import TakenValue, facts_of, model_claims
 from sgcad_core.reading.second_reader.field_claims import KINDS, UNKNOWN_P, Claim, rules_claim
 from sgcad_core.reading.second_reader.fuse_whole import SURE, agree, decided, same, whole
 from sgcad_core.records.second_reader import Answered, Opinion, Weights

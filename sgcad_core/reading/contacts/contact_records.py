@@ -1,13 +1,34 @@
-"""A contact as a sentence tells it, and what other tellings of the same pair add."""
+"""Contacts as records: as one sentence tells them, and as they stand for the crash."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import get_args
 
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.area_phrases import Zone
 from sgcad_core.reading.text.sentence_roles import HIT, Role
+from sgcad_core.records.specs import Area
+
+AREAS: tuple[Area, ...] = get_args(Area)
+
+
+@dataclass(frozen=True)
+class ContactFacts:
+    """One contact; `struck` may be an object or other road user of `CrashFacts.others`."""
+
+    striker: str
+    struck: str
+    striker_area: Area
+    struck_area: Area
+    areas_stated: bool
+    """Whether the text names both sides, and no corner."""
+    stated: bool = True
+    """False: the pair is inferred, the text tells no contact."""
+    striker_may: tuple[Area, ...] = AREAS
+    """Sides that the text allows: both of a corner, all four where it names none."""
+    struck_may: tuple[Area, ...] = AREAS
 
 
 @dataclass(frozen=True)
