@@ -1,7 +1,7 @@
-"""The facts of a crash as its narrative tells them: who moved how, who struck whom, in what conditions.
+"""The facts of a crash as its narrative tells them: vehicles with their motion, contacts, conditions.
 
-Records, and how they are put together from what was read and settled. What the text leaves open is inferred from
-what it says (relation words, critical events, the sides that touched) and marked as such. Knows no road network.
+Records, and how they are put together from what was read and inferred. What the text leaves open is inferred from what
+it says (relation words, critical events, the sides that touched) and marked as such. Knows no road network.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class VehicleFacts:
     from_stop: bool = False
     """Whether it had just started from a stop."""
     faces: bool = False
-    """Whether the heading that is told is where it faces: who backs goes the other way."""
+    """Whether the told heading is the facing: a vehicle that backs then goes the other way."""
 
     @property
     def standing(self) -> bool:
@@ -80,11 +80,11 @@ class CrashFacts:
     impacts: tuple[ImpactTold, ...] = ()
     """Contacts behind the first one with things, and of the same pair once more, in order."""
     near_crash: NearCrashFacts | None = None
-    """Where set, nobody touches: the first of `contacts` is the one that was avoided."""
+    """Set for a near crash: the first of `contacts` is the one that was avoided."""
     oriented: bool = False
     """Whether any heading is told: if not, all headings are right only relative to one another."""
     unnumbered: bool = False
-    """Whether the report numbers nobody: V1 is its subject."""
+    """Whether the report has no vehicle numbers: V1 is its subject."""
     gore: Mapping[str, str] = field(default_factory=dict)
     """Vehicles in a gore, and what they do there (`places.InGore`)."""
     gap: Gap | None = None
@@ -151,10 +151,10 @@ def _without_vehicle(
 def _subject_first(
     vehicles: tuple[VehicleFacts, ...], contacts: tuple[ContactFacts, ...]
 ) -> tuple[tuple[VehicleFacts, ...], tuple[ContactFacts, ...]]:
-    """The subject's own contact before those of others: only the first one is sure to come about in a scenario.
+    """Moves the subject's own contact to the front: only the first one is sure to happen in a scenario.
 
-    Who stood and was pushed into the subject by another stands until then. Who strikes the side of another and is told
-    to have stood before is under way, which the report does not say.
+    A vehicle that stood and was pushed into the subject stands until then. A vehicle that strikes the side of another
+    and is told to have stood before is under way, which the report does not say.
     """
     mine = next((c for c in contacts if vehicles and vehicles[0].id in (c.striker, c.struck)), None)
     if mine is None or not mine.stated:

@@ -28,7 +28,14 @@ from sgcad_core.reading.contacts.crash_roles import role_facts
 from sgcad_core.reading.contacts.later_impacts import later_impacts, with_resting_contacts
 from sgcad_core.reading.contacts.near_crash import before_evasion, near_miss, near_misses, tells_hit
 from sgcad_core.reading.crash_facts import CrashFacts, crash_of
-from sgcad_core.reading.inference.gaps import Gap, foreign, several, thin, untold, without_actors
+from sgcad_core.reading.inference.gaps import (
+    Gap,
+    contact_untold,
+    motion_untold,
+    other_language,
+    several_reports,
+    without_actors,
+)
 from sgcad_core.reading.inference.infer_facts import infer_crash
 from sgcad_core.reading.inference.inference_state import CrashTold
 from sgcad_core.reading.language import rule
@@ -61,25 +68,25 @@ class Reading:
     sentences: tuple[Sentence, ...]
     """With their places in that text or, of a `TracedText` one, in the text as it was first written."""
     crash: CrashFacts
-    """Headings that nobody tells are turned to fit the roads."""
+    """Untold headings are turned to fit the roads."""
     roads: RoadFacts
     signals: Mapping[str, SignalState] = field(default_factory=dict)
     """What the traffic signal showed to a vehicle, by its id, where that is told."""
     lost_control: bool = False
-    """Whether somebody skidded, slid, spun or could not hold the road; who it was is often left to the reader."""
+    """Whether a vehicle skidded, slid, spun or could not hold the road; the text often leaves open which one."""
     facts: tuple[Fact, ...] = ()
     """All of that as records with their sentences: stated, inferred, or a default of the reading itself."""
     edits: tuple[Edit, ...] = ()
     """What people said otherwise; all of the above then follows them (`sgcad_core.reading.reading_with_edits`)."""
     called: Mapping[str, str] = field(default_factory=dict)
-    """Of a text that numbers nobody: number that a sentence gives somebody -> id of that person, cyclist or animal."""
+    """Of a text without vehicle numbers: number in a sentence -> id of that person, cyclist or animal."""
 
     def actor(self, name: str) -> str:
-        """The id of whom a sentence names so."""
+        """The id of the actor that a sentence names so."""
         return self.called.get(name, name)
 
     def text_of(self, sentence: Sentence) -> str:
-        """A sentence as it was understood, with everybody's id in it."""
+        """A sentence as it was understood, with every actor's id in it."""
         return rule("common.vehicle").sub(lambda m: self.actor(m[0]), sentence.text) if self.called else sentence.text
 
 
@@ -92,19 +99,9 @@ def read(narrative: str | TracedText) -> Reading:
     return infer(text.text, found, named, events(found, named, clauses(named), of_study=tells_study(even.text)))
 
 
-def crash_facts(narrative: str) -> CrashFacts:
-    """Vehicles, contacts and conditions of a text that nobody has read yet."""
-    return read(narrative).crash
-
-
-def road_facts(narrative: str) -> RoadFacts:
-    """Roads, and vehicles on them, of a text that nobody has read yet."""
-    return read(narrative).roads
-
-
 # ------------------------------------------------------------------ the stages
 class Mentions(NamedTuple):
-    """Who is in the report, and its sentences with everybody named by number."""
+    """The actors of the report, and its sentences with every actor named by number."""
 
     roster: Roster
     statements: tuple[Statement, ...]
@@ -129,7 +126,7 @@ def sentences(text: TracedText) -> tuple[Sentence, ...]:
 
 
 def mentions(found: tuple[Sentence, ...], counted: bool = False) -> Mentions:
-    """The vehicles, and the sentences with all that refers to them resolved; `counted`: the report numbers nobody."""
+    """The vehicles, and the sentences with all references resolved; `counted`: the report has no vehicle numbers."""
     roster = read_roster((s.text for s in found), counted)
     told = resolve_sentences(found, roster)
     if roster.counted and (gone := bystanders(contact_mentions(told, roster) or near_misses(told, roster), roster)):
@@ -139,8 +136,8 @@ def mentions(found: tuple[Sentence, ...], counted: bool = False) -> Mentions:
 
 
 def bystanders(told: tuple[ContactMention, ...], roster: Roster) -> tuple[str, ...]:
-    """Those who touch nobody, where somebody touches the subject; nobody where that is not told. A subject that is only
-    whoever was described first is no better than the others."""
+    """Vehicles without a contact, where one touches the subject; empty where that is not told. A subject that was only
+    described first is no better than the others."""
     met = {v for mention in told for v in (mention.actor, mention.other)}
     named = next((v for v in roster.vehicles if not v.described or v.id in met), None)
     subject = named.id if named else None
@@ -174,7 +171,7 @@ def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...
 
 
 def _coded_loss(moved: Mapping[str, VehicleMotion]) -> dict[str, ManeuverCue]:
-    """Who lost control by the codes of a critical event."""
+    """Losses of control by the codes of a critical event."""
     return {v: cue for v, motion in moved.items() if (cue := motion.cue("code:lost_control"))}
 
 
@@ -197,7 +194,7 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
 
 def _gap(narrative: str, found: tuple[Sentence, ...], named: Mentions, crash: CrashFacts) -> Gap | None:
     """What keeps the text from being drawn."""
-    gap = foreign(account(TracedText.of(narrative)).text) or several(narrative)
+    gap = other_language(account(TracedText.of(narrative)).text) or several_reports(narrative)
     if gap or not crash.vehicles:
         return gap or without_actors(narrative, found)
     if crash.near_crash or (tells_study(narrative) and not any(map(tells_hit, named.statements))):
@@ -206,6 +203,6 @@ def _gap(narrative: str, found: tuple[Sentence, ...], named: Mentions, crash: Cr
     subject = crash.vehicles[0].id
     mine = (c.stated and subject in (c.striker, c.struck) for c in crash.contacts)
     if named.roster.counted or alone:
-        return untold(narrative, mine)
+        return contact_untold(narrative, mine)
     told = any(c.stated for c in crash.contacts) or any(v.heading_stated for v in crash.vehicles)
-    return None if told else thin(narrative)
+    return None if told else motion_untold(narrative)

@@ -1,4 +1,4 @@
-"""A reading with a person's facts in the place of what was read, so that all who consult it go by them.
+"""A reading with a person's facts in place of those read, so that all its users follow them.
 
 Writers by rules, validators and results then follow a person as they follow the text: a heading, a maneuver, a contact
 counts as stated. What no reading holds (lanes of one leg, a start road) is laid over the specs later
@@ -33,7 +33,7 @@ _SKY = ("light", "weather", "surface")
 Given = Mapping[str, Value]
 
 
-def mended(reading: Reading, edits: Sequence[Edit]) -> Reading:
+def with_edits(reading: Reading, edits: Sequence[Edit]) -> Reading:
     """The reading as a person has it; the same one without edits. Never raises: what does not fit is left out."""
     if not effective(edits):
         return reading
@@ -75,7 +75,7 @@ def _of_actor(given: Given, name: str) -> dict[str, Value]:
 
 
 def _cast(crash: CrashFacts, given: Given) -> CrashFacts:
-    """With who was added, without who was taken out."""
+    """The crash with the added actors and without the removed ones."""
     for field, value in given.items():
         group, _, rest = field.partition(".")
         name, _, attribute = rest.partition(".")
@@ -103,7 +103,7 @@ def _without(crash: CrashFacts, name: str) -> CrashFacts:
 
 
 def _with_vehicle(crash: CrashFacts, name: str, fields: Mapping[str, Value]) -> CrashFacts:
-    """One vehicle's edited fields; a heading turns everybody's where all were only relative to one another."""
+    """One vehicle's edited fields; a heading turns all vehicles where all were only relative to one another."""
     known = crash.vehicle(name)
     if known is None or not fields:
         return crash

@@ -28,7 +28,7 @@ from research.training.evaluate import Answer, fields, source, tally  # noqa: E4
 from sgcad_core.errors import Refused  # noqa: E402
 from sgcad_core.reading.behavior.behavior import behavior_of_facts  # noqa: E402
 from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts  # noqa: E402
-from sgcad_core.reading.reading import road_facts  # noqa: E402
+from sgcad_core.reading.reading import read  # noqa: E402
 from sgcad_core.records.specs import Compass  # noqa: E402
 from sgcad_core.roads.layout import COMPASS, road_spec  # noqa: E402
 
@@ -52,7 +52,7 @@ def report_of(seed: int, held_out: bool) -> Report:
 
 def answer_of(report: Report) -> Answer:
     """What the rules make of a report, in the form of the model's answers; nobody and nothing where they refuse it."""
-    facts = road_facts(report.narrative)
+    facts = read(report.narrative).roads
     layout = layout_of_facts(facts, DEFAULTS)
     try:
         behavior = behavior_of_facts(facts.crash, road_spec(layout)).model_dump(mode="json")

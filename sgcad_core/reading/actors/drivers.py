@@ -1,7 +1,7 @@
-"""Whom a report means by "Plaintiff", "our insured" or "Mr. Ault": the vehicle that he drives in it.
+"""Names of parties ("Plaintiff", "our insured", "Mr. Ault") as the vehicles that they drive.
 
 Works on sentences in which every vehicle is a number. "Claimant was operating V1 north" becomes "V1 was driving north",
-and from then on, or before, "Claimant" is V1. Of two parties the other one has the other of two vehicles. Knows no
+and "Claimant" is V1 in every other sentence, too. Of two parties, the other one has the other of two vehicles. Knows no
 motion.
 """
 
@@ -17,7 +17,7 @@ from sgcad_core.reading.language import rule, words
 _PARTIES = words("party")
 _AGAINST = (("plaintiff", "defendant"), ("claimant", "respondent"), ("claimant", "insured"),
             ("petitioner", "respondent"), ("claimant", "defendant"))  # fmt: skip
-"""Who stand against each other."""
+"""Pairs of opposing parties."""
 _DROVE = rule("drivers.drove")
 _POSSESSOR = rule("drivers.possessor")
 
@@ -28,7 +28,7 @@ class Drivers(NamedTuple):
     called: Mapping[str, str]
 
     def resolve(self, text: str) -> str:
-        """The sentence with the vehicle in place of who drives it."""
+        """The sentence with the vehicle in place of its driver."""
         text = _POSSESSOR.sub("", text)
         text = _DROVE.sub(_driven, text)
         return rule("drivers.party").sub(self._number, text) if self.called else text
@@ -41,7 +41,8 @@ NO_DRIVERS = Drivers({})
 
 
 def drivers(told: Iterable[str], roster: Roster) -> Drivers:
-    """Who drives what, of sentences whose vehicles are numbers; parties that are said to drive two are left out."""
+    """Vehicle of each party, from sentences whose vehicles are numbers; parties that are said to drive two are left
+    out."""
     meant: dict[str, set[str]] = {}
     for text in told:
         for name, vehicle in _named(text):

@@ -1,4 +1,7 @@
-"""People who have no number: whom "him" means, and from which side they come. Knows sentences, no motion."""
+"""People and objects without a vehicle number: pronouns, directions of walking, kinds, ids.
+
+Only what a vehicle of the report hits becomes an actor; non-contact cars, buses and police officers do not.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +37,7 @@ def with_people(told: Iterable[Statement]) -> Iterator[Statement]:
 
 
 def walk_of(word: str, told: Iterable[Statement]) -> WalkDirection:
-    """The first that the sentences which name somebody tell of his way."""
+    """The first direction of walking that sentences with this word tell."""
     for t in told:
         if t.role not in ("codes", "factors") and word in t.text:
             walk = _told(t.text[t.text.index(word) :])
@@ -56,7 +59,7 @@ def _told(text: str) -> WalkDirection:
 
 
 def side_facing(walk: WalkDirection, driver: Compass | None) -> Area | None:
-    """The side of one who walks that faces a driver on a heading; None where neither hand nor heading tells it."""
+    """The side of a pedestrian that faces a driver on a heading; None where neither hand nor heading tells it."""
     if walk.hand:
         return OPPOSITE_HAND[walk.hand]
     if walk.way is None or driver is None:
@@ -78,7 +81,7 @@ class OtherFacts:
 def others(
     contact_mentions: Iterable[ContactMention], vehicles: tuple[str, ...], parked: int = 0
 ) -> tuple[OtherFacts, ...]:
-    """Everybody and everything that is hit and has no number, each word once, in order; `parked`: O ids taken."""
+    """People and objects without a number that are hit, each word once, in order; `parked`: O ids taken."""
     words: list[str] = []
     for mention in contact_mentions:
         if mention.other not in vehicles and mention.other not in words and mention.role not in ("interview", "injury"):
@@ -92,7 +95,7 @@ def others(
 
 
 def is_person(word: str) -> bool:
-    """Whether somebody without a number is a road user, not a thing."""
+    """Whether an actor without a number is a road user, not an object."""
     return _kind(word)[1] != "object"
 
 

@@ -1,9 +1,9 @@
-"""Who is who in a report that numbers nobody: every phrase of somebody becomes the number of one actor.
+"""Numbers for the actors of a report that has none: every noun phrase of an actor becomes that actor's number.
 
 "The test vehicle was stopped when a white van hit it. The van left." becomes "V1 was stopped when a white van (V2) hit
-it. V2 left.", so that everything behind works on numbers. The subject of the report is V1, the others follow in the
-order in which they are named; a text that has any number stays as it is. People and animals count here too:
-`Roster.called` tells their own letters. Knows what phrases mean, not what anybody does.
+it. V2 left.", so that all later stages work on numbers. The subject of the report is V1, the others follow in the order
+in which they are named; a text that has any number stays as it is. People and animals count here, too: `Roster.called`
+gives their own letters. Knows what phrases mean, no motion.
 """
 
 from __future__ import annotations
@@ -18,18 +18,19 @@ from sgcad_core.reading.text.traced_text import TracedText, joined
 
 _PHRASE = rule("references.phrase")
 _OWNERS = ("his", "her", "their")
-"""Of somebody's own vehicle; it is named so where no vehicle was named before: "a woman was hurt when her car ..."."""
+"""Determiners of a person's own vehicle, which is named so where no vehicle was named before: "a woman was hurt when
+her car ..."."""
 _NEAR = 40
 """Characters before a phrase in which a word may say that it is of a stranger."""
 
 
 def has_actor_numbers(text: str) -> bool:
-    """Whether a normalized report numbers anybody."""
+    """Whether a normalized report numbers any actor."""
     return bool(rule("common.vehicle").search(text))
 
 
 def number_actors(text: TracedText) -> TracedText:
-    """The normalized text with everybody named by number; unchanged if there is any number."""
+    """The normalized text with a number for every actor; unchanged if there is any number."""
     if has_actor_numbers(text.text):
         return text
     automated = _automated(text.text)
@@ -40,7 +41,7 @@ def number_actors(text: TracedText) -> TracedText:
 
 
 def numbered(text: TracedText, numbering: Numbering) -> TracedText:
-    """The text with a number for everybody whom the numbering takes, block by block."""
+    """The text with a number for every actor that the numbering accepts, block by block."""
     blocks = [_numbered(block, numbering) for block in text.split_at("\n\n")]
     return joined(blocks, "\n\n")
 
@@ -62,7 +63,7 @@ def _automated(text: str) -> bool:
 
 
 def _companies(text: str) -> list[str]:
-    """Companies by whose names a report calls the automated vehicle: "the Acme AV"."""
+    """Company names by which a report calls the automated vehicle: "the Acme AV"."""
     called = (rule("references.branded").match(m["automated"]) for m in _PHRASE.finditer(text) if m["automated"])
     return list(dict.fromkeys(name.group().strip() for name in called if name))
 
@@ -75,15 +76,15 @@ class Numbering:
     announcing: bool = False
     at: int = 0
     last: tuple[re.Match[str], Actor] | None = None
-    """The phrase before, and whom it means."""
+    """The phrase before, and its actor."""
 
     @property
     def alone(self) -> bool:
-        """Whether nobody but the subject was named so far."""
+        """Whether only the subject was named so far."""
         return all(actor.subject for actor in self.cast.actors)
 
     def fill(self, match: re.Match[str]) -> str:
-        """What stands for a phrase: the number alone, or behind the words that first describe somebody."""
+        """The replacement of a phrase: the number, at first behind the words that describe the actor."""
         phrase = Phrase(match)
         self.at += 1
         if self.is_nobody(phrase):
@@ -127,7 +128,8 @@ class Numbering:
         return bool(rule("references.stranger").search(before)) or bool(ridden and self._has(phrase.kind))
 
     def _described(self, match: re.Match[str]) -> Actor | None:
-        """Who is only said to be what a phrase says: "the other vehicle was a 2031 van", "the car, a van, ..."."""
+        """The actor before, where a phrase only describes it: "the other vehicle was a 2031 van", "the car, a van,
+        ..."."""
         if self.last is None or self.last[0].string != match.string or (match["det"] or "").lower() not in ("a", "an"):
             return None
         between = match.string[self.last[0].end() : match.start()]
@@ -169,9 +171,9 @@ class Numbering:
 
 
 def number_cyclists(text: TracedText) -> TracedText:
-    """A text that numbers V1 alone with everybody on a bicycle numbered from V2 on; all others stay as they are.
+    """A text that numbers V1 alone with all cyclists numbered from V2 on; all others stay as they are.
 
-    Of several numbered vehicles the words alone do not tell whom a cyclist met: those texts stay as well.
+    Of several numbered vehicles the words alone do not tell which one a cyclist met: those texts stay as well.
     """
     if {m.group() for m in rule("common.vehicle").finditer(text.text)} != {"V1"}:
         return text
@@ -180,7 +182,7 @@ def number_cyclists(text: TracedText) -> TracedText:
 
 
 class _Cyclists(Numbering):
-    """Numbers cyclists alone, and marks them as numbered here; no phrase of a vehicle means V1 or anybody else."""
+    """Numbers cyclists alone, and marks them as numbered here; no phrase of a vehicle means V1 or another actor."""
 
     def is_nobody(self, phrase: Phrase) -> bool:
         return phrase.kind != "bicycle" or not phrase.match["user"] or super().is_nobody(phrase)
@@ -190,7 +192,7 @@ class _Cyclists(Numbering):
 
 
 def number_parked(text: TracedText) -> TracedText:
-    """A numbered text with the one parked vehicle that somebody hits and that has no number given the next one."""
+    """A numbered text in which the one parked vehicle that is hit and has no number gets the next one."""
     named = list(rule("references.parked").finditer(text.text))
     hits = {m.start("who") for m in rule("references.parked_hit").finditer(text.text)}
     hit = next((m.start() for m in named if m.start() in hits), None)

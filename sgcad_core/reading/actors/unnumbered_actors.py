@@ -1,4 +1,4 @@
-"""Who was named so far in a report that numbers nobody, and whom a phrase means. Knows no deed."""
+"""Actors named so far in a report without numbers, and the actor that a phrase means. Knows no motion."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PARTS: dict[str, str] = values("beside_part") | {w: _PART_OF[s] for w, s in _STA
 """Words that tell where beside the subject a vehicle is: "the lead car" is ahead of it."""
 _USERS: dict[str, str] = values("road_user")
 _MOST = 8
-"""Actors of a report that numbers nobody; further ones stay as they are written."""
+"""Actors of a report without numbers; further ones stay as they are written."""
 _ANY = ("vehicle", "motorist")
 """Heads that may mean any vehicle."""
 _NO_VEHICLE = ("pedestrian", "bicycle", "animal")
@@ -26,7 +26,7 @@ _CARS = ("car", "sedan", "coupe", "hatchback", "passenger car", "passenger vehic
 
 @dataclass
 class Actor:
-    """Somebody who was named: `heads` are the nouns used, `order` which one of its kind it is said to be."""
+    """An actor that was named: `heads` are the nouns used, `order` which one of its kind it is said to be."""
 
     number: int
     kind: str
@@ -86,7 +86,7 @@ class Phrase:
 
     @property
     def branded(self) -> bool:
-        """Whether a company's name says whose it is: "the Acme vehicle"."""
+        """Whether a company's name marks the vehicle: "the Acme vehicle"."""
         return bool(rule("references.branded").match(self.match["mods"]))
 
     @property
@@ -115,7 +115,7 @@ def _is_car(head: str) -> bool:
 
 @dataclass
 class NamedActors:
-    """Everybody named so far."""
+    """All actors named so far."""
 
     actors: list[Actor] = field(default_factory=list)
     automated: bool = False
@@ -132,7 +132,7 @@ class NamedActors:
         return actor
 
     def meant(self, phrase: Phrase) -> Actor | None:
-        """Whom a definite phrase means: the last one that its words fit, best fit first; None: nobody so far."""
+        """The actor of a definite phrase: the last one that its words fit, best fit first; None: none so far."""
         if (subject := self.subject()) and self.automated and self._by_name(phrase) == [subject]:
             return subject
         others = sorted((a for a in self.actors if not (a.subject and self.automated)), key=lambda a: -a.at)
@@ -162,7 +162,7 @@ class NamedActors:
         return self.automated and large and all(a.subject or a.kind in _NO_VEHICLE for a in self.actors)
 
     def open(self, phrase: Phrase) -> Actor | None:
-        """Whom the opening of the report announced and nobody has told of since, if the words fit."""
+        """The actor that the opening announced and no later sentence named, if the words fit."""
         return next((a for a in self.actors if a.announced and _fits(a, phrase)), None)
 
 

@@ -28,7 +28,7 @@ def named_before(text: str, vehicle: str) -> list[str]:
 
 
 def introductions(text: str, vehicle: str) -> list[str]:
-    """The words that first describe an actor of a report that numbers nobody."""
+    """The words that first describe an actor of a report without numbers."""
     return [m.group(1) for m in INTRODUCED.finditer(text) if m.group(2) == vehicle]
 
 

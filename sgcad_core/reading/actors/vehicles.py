@@ -1,4 +1,4 @@
-"""Who is in the report: numbered vehicles, their make, model and kind, and every way they are mentioned.
+"""Numbered vehicles, their make, model and kind, and every way they are mentioned.
 
 `read_roster` reads the descriptions; `Roster.resolve` rewrites a sentence so that each vehicle is just "V<n>":
 descriptions behind a mention go, "the Ford" becomes the number. Knows no motion and no contact.
@@ -51,7 +51,7 @@ class Roster:
     aliases: dict[str, str] = field(default_factory=dict)
     """Lower-case word or phrase -> id, only where it names one vehicle."""
     bystanders: tuple[str, ...] = ()
-    """Numbers of those who are in the text and take no part in the crash."""
+    """Numbers of actors in the text that take no part in the crash."""
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -66,11 +66,11 @@ class Roster:
 
     @property
     def counted(self) -> bool:
-        """Whether the numbers were given here: the report numbers nobody and tells one account in order."""
+        """Whether the numbers were given here: the report has none and tells one account in order."""
         return any(v.counted for v in self.vehicles)
 
     def without(self, bystanders: Iterable[str]) -> Roster:
-        """The roster of those who take part."""
+        """The roster without bystanders."""
         gone = tuple(bystanders)
         stay = tuple(v for v in self.vehicles if v.id not in gone)
         names = {name: id for name, id in self.aliases.items() if id not in gone}
@@ -146,7 +146,7 @@ def read_roster(sentences: Iterable[str], counted: bool = False) -> Roster:
 
 
 def _marked(identity: VehicleDescription) -> VehicleDescription:
-    """Numbered here though the report numbers others: somebody on a bicycle, else a parked vehicle."""
+    """An actor numbered here though the report numbers others: a cyclist, else a parked vehicle."""
     return replace(identity, counted=True) if identity.kind == "bicycle" else replace(identity, beside=True)
 
 
@@ -221,7 +221,7 @@ def _completed(v: VehicleDescription, full: list[Source], told: list[str]) -> Ve
 
 
 def _fits(v: VehicleDescription, source: Source) -> bool:
-    """Whether somebody may be of that make and model: who has a body word has one of its kind."""
+    """Whether a vehicle may be of that make and model: a body word allows its own kind only."""
     return not v.kind_stated or kind_of(source.words, None)[0] == v.kind
 
 

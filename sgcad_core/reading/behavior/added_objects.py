@@ -1,6 +1,6 @@
-"""What vehicles strike after they met: things beside the road and people who stand there join a behavior as actors.
+"""Actors added to a behavior after the first contact: objects and people beside the road, and vehicles in a gore.
 
-Ids are those of the crash's others where the same thing is among them. Knows facts and actors, no network.
+Ids are those of the crash's others where the same object is among them. Knows facts, actors and roads; no text.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ def in_gore(
 
 
 def _across(ramp: Way, ways: Sequence[Way], how: str) -> dict[str, object]:
-    """Where one starts who crosses the gore of a ramp, and by which road he leaves."""
+    """Start and exit road of a vehicle that crosses the gore of a ramp."""
     into = [w for w in ways if any(e is ramp for e in exits(w, ways)) and w.road.kind != RAMP]
     came = min(into, key=lambda w: abs(turn_of(w, ramp)), default=None)
     if came is None:

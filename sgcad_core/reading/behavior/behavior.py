@@ -59,13 +59,13 @@ def behavior_of_facts(facts: CrashFacts, spec: RoadSpec) -> BehaviorSpec:
 
 
 def _near_crash(facts: CrashFacts, contacts: list[ContactFacts]) -> NearCrash | None:
-    """Of a report in which nobody touches: the contact that was avoided, and how."""
+    """The avoided contact of a near crash, and the evasions; None of a report that tells a contact."""
     near = facts.near_crash
     return None if near is None or not contacts else near_crash_of(near, _contact(contacts[0]))
 
 
 def as_read(behavior: BehaviorSpec, facts: CrashFacts) -> BehaviorSpec:
-    """An answered behavior whose first contact did not come about, where the text tells a near crash; else as it is."""
+    """An answered behavior with its first contact as avoided, where the text tells a near crash; else unchanged."""
     near = facts.near_crash
     if near is None or not near.stated or not behavior.contacts:
         return behavior
@@ -90,7 +90,7 @@ def _actor(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> Act
 
 
 def _maneuver(v: VehicleFacts, way: Way) -> Maneuver:
-    """As told; from a ramp one merges; who is parked along an aisle with stalls stands in it."""
+    """As told; a lane change from a ramp is a merge; a vehicle parked along an aisle with stalls is stopped in it."""
     if way.road.kind == RAMP and v.maneuver in _SHIFTS:
         return "merge"
     along = is_aisle(way.road) and v.heading_stated and not square_rad(v, way)
@@ -98,7 +98,7 @@ def _maneuver(v: VehicleFacts, way: Way) -> Maneuver:
 
 
 def _speed_mph(v: VehicleFacts) -> int | None:
-    """As told; who starts from a stop is slow at the contact; else the planner's choice."""
+    """As told; slow for a vehicle that starts from a stop; else None, the planner's choice."""
     if v.standing:
         return None
     return v.speed_mph or (FROM_STOP_MPH if v.from_stop else None)

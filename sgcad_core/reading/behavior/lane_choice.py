@@ -28,7 +28,7 @@ def lane_of(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> in
 
 
 def _stated_lane(v: VehicleFacts, count: int, turns: tuple[Turn, ...]) -> int | None:
-    """As told; "the right lane" of who does not turn right is the rightmost through lane, likewise the left one."""
+    """As told; "the right lane" without a right turn is the rightmost through lane, likewise on the left."""
     if v.lane:
         return min(v.lane, count) if v.lane > 0 else max(1, count + 1 + v.lane)
     straight = "turn" not in v.maneuver and v.meant is None

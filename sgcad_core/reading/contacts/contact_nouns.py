@@ -25,7 +25,7 @@ class NounContact(NamedTuple):
 
 
 _PUSHES = (("v1", "v2", "a2"), ("v3", "v4", "a4"), ("v5", "v6", "a6"))
-"""Groups of who is pushed, into whom, and where."""
+"""Groups of a pushed vehicle, the vehicle it is pushed into, and the area."""
 _NOTHING = rule("contact_nouns.nothing")
 
 
@@ -72,7 +72,8 @@ def involved(text: str) -> Iterator[NounContact]:
 
 
 def door_of(actor: str, before: str, scope: str) -> str | None:
-    """The door or mirror that struck `actor`, in words, where a sentence does not say whose: then it is another's."""
+    """The words for a door or mirror that struck `actor`, where a sentence names no owner: it belongs to another
+    vehicle."""
     part = rule("contact.a_part").search(before)
     struck = rule("contact_words.active_object").match(scope) if part else None
     return part["area"] if part and struck and struck["v"] == actor else None
@@ -105,7 +106,7 @@ def struck_pair(scope: str, area: Zone | None, other_area: Zone | None) -> tuple
 
 
 def _strikes_first(pair: tuple[Zone | None, Zone | None]) -> bool:
-    """Whether the first of two zones is the front of who strikes."""
+    """Whether the first of two areas is the striker's front."""
     return (pair[0] or "").startswith("front") or not (pair[1] or "").startswith("front")
 
 

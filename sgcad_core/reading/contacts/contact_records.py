@@ -48,7 +48,7 @@ class ContactMention:
     noun: bool = False
     """Statement by nouns ("the impact was between ..."), not by a verb of hitting."""
     summary: bool = False
-    """No more than who collided with whom, wherever in the text: it says nothing of when."""
+    """The text says only which two collided, wherever it stands; it gives no order in time."""
 
     @property
     def source(self) -> Source:
@@ -59,7 +59,7 @@ class ContactMention:
 
 
 def with_areas(mention: ContactMention, retold: Iterable[ContactMention]) -> ContactMention:
-    """The blow with areas that it lacks taken from other tellings of the same pair."""
+    """The mention with areas that it lacks taken from other mentions of the same pair."""
     for other in retold:
         if {other.actor, other.other} != {mention.actor, mention.other}:
             continue

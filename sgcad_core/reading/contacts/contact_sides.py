@@ -25,11 +25,11 @@ _BENT = ("turn_left", "turn_right", "u_turn", *_SIDLING)
 
 def infer_contacts(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> list[ContactFacts]:
     if not pairs and crash.roster.counted and crash.contact_mentions:
-        return []  # the report tells what was touched, and it is no vehicle
+        return []  # the report tells a contact, with no vehicle
     if not pairs and any(
         mention.other not in crash.roster.ids and is_person(mention.other) for mention in crash.contact_mentions
     ):
-        return []  # somebody without a number was hit; the vehicles are not told to have touched
+        return []  # an actor without a number was hit; no contact of the vehicles is told
     if not pairs and len(crash.roster.ids) >= 2:
         a, b = crash.roster.ids[:2]
         if crash.contact_mentions and frozenset((a, b)) in crash.missed:
@@ -82,7 +82,7 @@ def _less_of_a_striker(inferred: CrashInferred, a: str, b: str) -> bool:
 def _brushed(
     inferred: CrashInferred, mention: ContactMention, area_a: Area | None, area_b: Area | None
 ) -> tuple[Area | None, Area | None]:
-    """Who goes past another touches a told corner or flank of it with the flank that faces it."""
+    """Gives an overtaking vehicle the flank that faces the told corner or flank of the other one."""
     oncoming = (
         apart(between(inferred.headings.get(mention.actor, "N"), inferred.headings.get(mention.other, "N")), 180) <= 45
     )
@@ -126,7 +126,7 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
 
 
 def _flank_of(zone: Zone | None) -> Area | None:
-    """The flank of a corner: two rear corners touch with it where nobody backs, since nobody drives tail first."""
+    """The flank of a corner: two rear corners touch with their flanks where no vehicle backs."""
     return zone.split("/")[1] if zone and zone.count("/") == 1 else None  # type: ignore[return-value]
 
 

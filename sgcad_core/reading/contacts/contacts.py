@@ -1,7 +1,7 @@
-"""Who struck whom and where: contacts in the order of the text.
+"""Contacts in the order of the text: striker, struck and areas.
 
-A sentence is first brought to one form ("V1's front" -> "the front of V1"), then every verb of hitting is
-read with its subject, voice and object. Interviews come last: they exchange numbers. Infers no area.
+A sentence is first brought to one form ("V1's front" -> "the front of V1"), then every verb of hitting is read with its
+subject, voice and object. Interviews come last: they exchange numbers. Infers no area.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def contact_mentions(told: Iterable[Statement], roster: Roster) -> tuple[Contact
 
 
 def _only_named(told: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
-    """Contacts of which a report says no more than who collided with whom."""
+    """Contacts of a report that says only which vehicles collided."""
     found = (
         replace(_from_nouns(pair, t), mutual=True, summary=True) for t in told for pair in involved(plain(t, roster))
     )
@@ -76,7 +76,7 @@ def _sentence(told: Statement, roster: Roster) -> list[ContactMention]:
 
 
 def _with_striker(mention: ContactMention, text: str) -> ContactMention:
-    """A collision of both with the striker first, where the sentence tells who struck."""
+    """A mutual collision with the striker first, where the sentence names it."""
     said = rule("contact_nouns.striker").search(text) if mention.mutual or mention.noun else None
     if not said or said["v"] != mention.other:
         return mention
@@ -145,7 +145,7 @@ def _contact_mention(
 
 
 def _meant_by_pronoun(told: Statement, actor: str, scope: str, roster: Roster) -> str:
-    """Whom "it" means that struck or was struck: not whom the sentence itself names behind the verb."""
+    """Resolves "it" as striker or struck: never the vehicle that the sentence itself names behind the verb."""
     whom = MENTION.search(scope)
     return (_the_other(told, actor, roster) or actor) if whom and whom.group() == actor else actor
 
@@ -172,7 +172,7 @@ def _hit_by_thing(
 def _subjects(
     told: Statement, before: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]]
 ) -> tuple[str, ...]:
-    """The vehicles whose verb this is."""
+    """The vehicles that are the subject of this verb."""
     caused = rule("contact_words.caused").search(before)
     if caused:
         return (caused["v"],)
@@ -192,7 +192,7 @@ def _active(
     scope = _clause(rule("contact_words.aside").sub(" ", scope))
     own = rule("contact_words.with_its").search(scope)
     if own and rule("contact.made_contact").match(verb) and rule("contact.touched").match(scope):
-        own = None  # "made contact with the left door": whose door it is stands elsewhere
+        own = None  # "made contact with the left door": its owner is told elsewhere
     area = area_of(own["area"]) if own else area
     rest = scope[: own.start()] + scope[own.end() :] if own else scope
     other, other_area = _object(told, actor, rest, roster)
@@ -211,7 +211,7 @@ def _active(
 
 
 def _area_against_area(mention: ContactMention, scope: str) -> ContactMention:
-    """The blow with the areas of "the left side of V1 against the right side of V2" behind its verb."""
+    """The mention with the areas of "the left side of V1 against the right side of V2" behind its verb."""
     met = rule("contact_words.against").search(scope)
     if not met or {met["v1"], met["v2"]} != {mention.actor, mention.other}:
         return mention
@@ -267,7 +267,8 @@ def _damaged(told: Statement, roster: Roster) -> Zone | None:
 
 
 def _not_itself(named: str, actor: str, roster: Roster, told: Statement) -> str | None:
-    """A vehicle cannot strike itself: the writer meant the other one, or whom the sentence before is about."""
+    """The named vehicle, or another one where it would strike itself: the other of two, or the subject of the sentence
+    before."""
     if named != actor:
         return named
     return roster.other(actor) if roster.counted else _the_other(told, actor, roster)

@@ -61,7 +61,7 @@ class ImpactRead(NamedTuple):
 
 
 def acting_segments(told: Sequence[Statement], roster: Roster) -> list[Segment]:
-    """Segments of all sentences, each with those whose deed it is."""
+    """Segments of all sentences, each with the vehicles that act in it."""
     return [part for t in told for part in _cut(_of_the_impact(t), roster)]
 
 
@@ -94,7 +94,7 @@ def courses_told(
 
 
 def _of_the_impact(told: Statement) -> Statement:
-    """ "The impact caused V1 to rotate" as a deed of V1; "V1 after striking V2 rotated" as one of V1 alone."""
+    """ "The impact caused V1 to rotate" with V1 as subject; "V1 after striking V2 rotated" with V1 alone."""
     text = rule("course_rest.caused").sub(_caused, told.text)
     text = rule("course_rest.after_striking").sub(r"\g<who>", text)
     return told if text == told.text else told._replace(text=text)
@@ -106,9 +106,9 @@ def _caused(m: re.Match[str]) -> str:
 
 
 def _with_own_acts(cut: Sequence[Segment], told: Statement) -> list[Segment]:
-    """Segments of one sentence, with what an onlooker did himself given back to him.
+    """Segments of one sentence, with an onlooker's own acts given back to it.
 
-    "V2 noticed V1 turning into her path and steered right": she did; so did who "avoided V2 by steering left".
+    "V2 noticed V1 turning into her path and steered right": V2 steered, as it did in "avoided V2 by steering left".
     """
     found: list[Segment] = []
     for segment in cut:
@@ -156,7 +156,7 @@ def _split(segment: Segment, impact: int) -> tuple[str, str]:
 
 
 def _if_evading(text: str) -> str:
-    """A text behind the impact that retells what somebody did before it."""
+    """A text behind the impact that retells an evasion before it; else ""."""
     return text if rule("course_evasion.to_avoid").search(text) or rule("course_evasion.none").search(text) else ""
 
 
@@ -176,7 +176,7 @@ def _read_evasion(one: _CourseReader, segment: Segment, text: str) -> None:
 
 
 def _done(text: str, wordings: Sequence[Rule]) -> list[tuple[Rule, re.Match[str]]]:
-    """The first of some wordings that tells a deed, not that it was left undone."""
+    """The first of some wordings that tells an act as done, not as left undone."""
     for wording in wordings:
         for m in wording.finditer(text):
             undone = rule("course_evasion.not_done").search(text[max(0, m.start() - 40) : m.end()])

@@ -1,10 +1,10 @@
-"""Who began the crash: the role of every road user, initiator, responder or bystander, with the sentence that says so.
+"""Roles in the crash: initiator, responder or bystander for every road user, with the sentence that says so.
 
-The initiator's deed made the conflict (in NMVCCS's words: the critical reason is coded to it), the responder was left
-to deal with it, everybody who takes no part in the first contact is a bystander. Evidence adds up: the report's codes
-outweigh citations and broken rules, these the maneuvers, and where nothing tells them apart the striker began. Not a
-finding of guilt. Replaced one role at a time, as in J. M. Scanlon et al., Waymo Simulated Driving Behavior in
-Reconstructed Fatal Crashes, 2021. Knows no road.
+The initiator's act made the conflict (in NMVCCS's words: the critical reason is coded to it), the responder had to deal
+with it, actors without a part in the first contact are bystanders. Evidence adds up: the report's codes outweigh
+citations and broken rules, these the maneuvers; without any of them the striker is the initiator. Not a finding of
+guilt. Replaced one role at a time, as in J. M. Scanlon et al., Waymo Simulated Driving Behavior in Reconstructed Fatal
+Crashes, 2021. Knows no road.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from sgcad_core.records.facts import Fact
 from sgcad_core.records.specs import Maneuver
 
 _REASON, _EVENT, _BROKE, _CITED, _MANEUVER = 8.0, 4.0, 2.0, 2.0, 1.0
-"""What a telling weighs. The codes are given after an inquiry, by people who know all that a report tells."""
+"""Weights of the kinds of evidence. Codes are given after an inquiry, with all that a report tells at hand."""
 _BEGINS: dict[Maneuver, float] = {
     "crossing_centerline": 1.0, "u_turn": 0.9, "backing": 0.9, "departing_road_left": 0.8, "departing_road_right": 0.8,
     "turn_left": 0.8, "lane_change_left": 0.8, "lane_change_right": 0.8, "merge": 0.7, "overtaking": 0.6,
     "turn_right": 0.5, "negotiating_curve": 0.2, "straight": 0.0, "other": 0.0, "slowing": -0.1, "stopped": -0.2,
     "parked": -0.3,
 }  # fmt: skip
-"""How far a maneuver, by itself, makes a conflict: who leaves a lane or crosses others' paths has to wait for them."""
+"""How far a maneuver, by itself, makes a conflict: leaving a lane or crossing a path brings a duty to yield."""
 _FROM_DRIVEWAY, _FROM_STOP, _RAN_INTO = 0.6, 0.3, 1.5
 
 
@@ -44,7 +44,7 @@ class RoleEvidence(NamedTuple):
 
 
 def role_facts(builder: FactBuilder, statements: Sequence[Statement], crash: CrashFacts) -> Iterator[Fact]:
-    """`vehicles.<id>.role` (and `others.<id>.role`) of everybody in the crash."""
+    """`vehicles.<id>.role` (and `others.<id>.role`) of every actor in the crash."""
     ids = [v.id for v in crash.vehicles] + [o.id for o in crash.others]
     signs = [*_told_signs(statements, {v.id for v in crash.vehicles}), *_maneuver_signs(crash)]
     pair = _pair(crash)

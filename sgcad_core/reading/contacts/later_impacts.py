@@ -38,7 +38,7 @@ def later_impacts(
 
 
 def with_resting_contacts(impacts: Sequence[ImpactRead], read: CoursesRead) -> tuple[ImpactRead, ...]:
-    """The contacts with those that a rest tells: who came to rest against a tree has struck it last."""
+    """The impacts with those that a rest implies: a vehicle at rest against a tree has struck it last."""
     struck = {(one.impact.actor, _word(one.impact.other)) for one in impacts}
     found = list(impacts)
     for vehicle, course in read.courses.items():
@@ -49,7 +49,7 @@ def with_resting_contacts(impacts: Sequence[ImpactRead], read: CoursesRead) -> t
 
 
 def _once(things: Sequence[ImpactRead]) -> Iterator[ImpactRead]:
-    """Things without retellings: the same thing again in a later paragraph is the same blow."""
+    """Impacts without retellings: the same object again in a later paragraph is the same impact."""
     last: dict[tuple[str, str], int] = {}
     for read in things:
         key = read.impact.actor, read.impact.other
@@ -87,7 +87,7 @@ def _word(thing: str) -> str:
 
 
 def _people(roster: Roster, contact_mentions: Sequence[ContactMention], first: ContactMention) -> Iterator[ImpactRead]:
-    """People who are struck once the vehicles have met."""
+    """Pedestrians and cyclists struck after the first contact of the vehicles."""
     seen: set[str] = set()
     for b in contact_mentions:
         told = b.other not in roster.ids and b.number > first.number and b.role not in ("interview", "injury")

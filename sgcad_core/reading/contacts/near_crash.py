@@ -1,7 +1,7 @@
-"""What nearly happened: who would have struck whom, who evaded how, how near they came.
+"""Near crashes: the contact that nearly happened, the evasions, the clearance.
 
-A sentence that tells a near miss is read without its "nearly" and "to avoid" as if it told the contact, so that whoever
-reads contacts reads these as well. A report that tells a contact tells no near crash.
+A sentence that tells a near miss is read without its "nearly" and "to avoid" as if it told the contact, so that the
+reader of contacts reads these as well. A report that tells a contact tells no near crash.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _RANGE_M = (0.1, 10.0)
 
 
 class EvasionTold(NamedTuple):
-    """What one vehicle did so that nobody touched."""
+    """The maneuver by which one vehicle avoided the contact."""
 
     vehicle: str
     maneuver: EvasiveManeuver
@@ -40,7 +40,7 @@ class NearMiss(NamedTuple):
     """A contact that did not come about, as told."""
 
     contact_mentions: tuple[ContactMention, ...] = ()
-    """Who would have struck whom; none where two come together and no more is told."""
+    """Contacts that would have happened; none where two vehicles come together and no more is told."""
     evasions: tuple[EvasionTold, ...] = ()
     clearance_m: float | None = None
     clearance_at: Source | None = None
@@ -48,9 +48,9 @@ class NearMiss(NamedTuple):
 
 @dataclass(frozen=True)
 class NearCrashFacts:
-    """That the first contact of a crash's facts is one that did not come about, and how it did not.
+    """Marks the first contact of a crash's facts as avoided, with evasions and clearance.
 
-    Sides that nobody tells are inferred like those of a contact; evasions that nobody tells are left to the planner.
+    Untold sides are inferred like those of a contact; untold evasions are left to the planner.
     """
 
     evasions: tuple[tuple[str, EvasiveManeuver], ...] = ()
@@ -90,7 +90,7 @@ def near_misses(told: Iterable[Statement], roster: Roster) -> tuple[ContactMenti
 
 
 def tells_hit(told: Statement) -> bool:
-    """Whether a sentence tells a contact, be it that nobody could read whose."""
+    """Whether a sentence tells a contact, even where its vehicles cannot be read."""
     return is_impact(rule("near_events.no_hit").sub(" ", told.text))
 
 
@@ -104,7 +104,7 @@ def _missed(told: Statement, roster: Roster) -> tuple[ContactMention, ...]:
 
 
 def before_evasion(cut: Iterable[Segment]) -> tuple[Segment, ...]:
-    """An account in short: all that it tells of a vehicle is its approach, up to where somebody evades.
+    """Segments cut before the evasion: the rest is the approach of the vehicle.
 
     Braking to avoid a contact is no maneuver before it.
     """
@@ -122,9 +122,9 @@ def _could_not(match: re.Match[str]) -> bool:
 
 
 def evaded(cut: Sequence[Segment], number: int, pair: tuple[str, ...], watched: str) -> tuple[EvasionTold, ...]:
-    """What a pair did in a sentence or beside it, one maneuver each.
+    """Evasions of a pair in a sentence or beside it, one maneuver each.
 
-    Of anybody but the one who is `watched` only what was done to avoid: others brake for reasons of their own.
+    Of vehicles other than the `watched` one only acts done to avoid count: others brake for reasons of their own.
     """
     found: dict[str, EvasionTold] = {}
     for segment in sorted(cut, key=lambda s: (abs(s.number - number), s.number)):

@@ -1,7 +1,7 @@
-"""Other readings of a crash, each one weak fact away from the one that stands, the most likely first.
+"""Alternative readings of a crash, each one weak fact away from the one that stands, the most likely first.
 
-For a writer whose checks doubt what was read. Whatever the text states outright is varied last and at a price, so that
-a stated fact gives way only where the checks gain much by it. Knows no network and no motion.
+For a writer whose checks doubt the reading. Stated facts are varied last and at a price, so that a stated fact gives
+way only where the checks gain much by it. Knows no network and no motion.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Hypothesis(NamedTuple):
     open: bool = False
     """Whether the text is silent on what differs, so that nothing told gives way."""
     corner: bool = False
-    """Whether it is the other side of a corner in a report that numbers nobody: the words fit both."""
+    """Whether it is the other side of a corner in a report without vehicle numbers: the words fit both."""
 
 
 def hypotheses(facts: CrashFacts) -> list[Hypothesis]:

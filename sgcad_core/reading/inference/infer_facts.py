@@ -49,7 +49,7 @@ def infer_crash(crash: CrashTold) -> CrashInferred:
 
 
 def _still_moving(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
-    """In a near crash one who comes to a stop is seen to slow; only who stood all the time stands."""
+    """In a near crash, makes a vehicle that comes to a stop slow; a vehicle that stood all the time stays stopped."""
     pair = {name for b in pairs[:1] for name in (b.actor, b.other)} or set(crash.roster.ids[:2])
     for v in sorted(pair) if crash.near else ():
         source = inferred.sources.get(f"{v} maneuver")
@@ -58,7 +58,7 @@ def _still_moving(crash: CrashTold, inferred: CrashInferred, pairs: list[Contact
 
 
 def _turned_headings(crash: CrashTold, inferred: CrashInferred) -> None:
-    """Who had turned before the crash heads where it is told to go since, else where the turn led."""
+    """Gives a vehicle that turned before the crash the heading told since, else the one that the turn led to."""
     for v, motion in crash.motions.items():
         turn = turned_before(motion, inferred.maneuvers[v])
         if turn is None or v not in inferred.headings:
@@ -75,7 +75,7 @@ def _turned_headings(crash: CrashTold, inferred: CrashInferred) -> None:
 
 
 def _faced_headings(crash: CrashTold, inferred: CrashInferred) -> None:
-    """Of an account in order: who backs heads where it was last told to face, whatever way it had come before."""
+    """Of an account in order: gives a backing vehicle the last told facing, whatever heading it had before."""
     for v, motion in crash.motions.items():
         faced = [(source.number, what.removeprefix("faces "), source) for what, source in motion.sources.items()
                  if what.startswith("faces ")]  # fmt: skip
@@ -86,8 +86,7 @@ def _faced_headings(crash: CrashTold, inferred: CrashInferred) -> None:
 
 
 def _change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
-    """Of a change of lane to a hand that nobody tells: towards the flank by which the two touched, away from a lane
-    that is told."""
+    """Directs a lane change without a told side: towards the flank of the contact, away from a told lane."""
     for v in crash.roster.ids:
         source = inferred.sources.get(f"{v} maneuver")
         if (

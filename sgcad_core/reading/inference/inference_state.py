@@ -24,7 +24,7 @@ TURN_DEG: dict[Maneuver, float] = {
 QUARTER_DEG: dict[Maneuver, float] = {"turn_left": -90, "turn_right": 90}
 """Heading change of a turn from one leg to another, clockwise degrees."""
 HIT_FROM: dict[Area, float] = {"left": 90.0, "right": 270.0, "back": 0.0, "front": 180.0}
-"""Heading of a striking vehicle relative to the one whose side it hits with its front, clockwise degrees."""
+"""Heading of a striker relative to the vehicle whose side it hits with its front, clockwise degrees."""
 
 
 @dataclass
@@ -39,7 +39,7 @@ class CrashTold:
     near: NearMiss | None = None
     """Of a report that tells no contact: `contact_mentions` are then those that did not come about."""
     walks: Mapping[str, WalkDirection] = field(default_factory=dict)
-    """How those who have no number go, by their word in `contact_mentions`."""
+    """Directions of pedestrians and others without a number, by their word in `contact_mentions`."""
     missed: frozenset[frozenset[str]] = frozenset()
     """Pairs that the text tells to have nearly touched."""
 
@@ -81,5 +81,5 @@ def side_hit(from_deg: float) -> Area:
 
 
 def is_sideswipe(mention: ContactMention) -> bool:
-    """Whether the blow's verb says that flanks touched."""
+    """Whether the verb of the contact says that flanks touched."""
     return mention.words.startswith(("sideswip", "side-swip", "side-slap", "sideslap"))

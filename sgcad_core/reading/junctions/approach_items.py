@@ -1,7 +1,7 @@
-"""The parts of a sentence that lists lanes of approaches: whose lanes, how many, for what, in or out.
+"""The parts of a sentence that lists lanes of approaches: leg, number, use, in or out.
 
 Marks of legs ("from the north", "southbound drivers", "every leg"), counts of lanes with their uses, and signs of the
-direction. Which leg gets what is decided in `sgcad_core.reading.junctions.approach_lanes`.
+direction. `sgcad_core.reading.junctions.approach_lanes` assigns them to legs.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Whose lanes a part of a sentence tells: legs, directions of travel, roads by name, "every leg"."""
+"""The legs that a part of a sentence refers to: legs, directions of travel, roads by name, "every leg"."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ APART = (ALL, STEM, MAIN)
 ROADS = ("axis", "named", "other", "main")
 """Kinds of parts that name a road, both of its legs."""
 KINDS = ("legs", "ways", "every", "each", "stem", "place", "unknown", *ROADS)
-"""Kinds of parts that say whose lanes are told."""
+"""Kinds of parts that name the legs of told lanes."""
 
 
 @dataclass
 class LegReference:
-    """Whose lanes: keys are bearings, "axis N", "all" or "stem"; `toward`: told by directions of travel."""
+    """Legs: keys are bearings, "axis N", "all" or "stem"; `toward`: told by directions of travel."""
 
     keys: tuple[str, ...] = ()
     toward: bool = False

@@ -126,7 +126,7 @@ def _street_of_sign(before: str, behind: str, sign: int, names: StreetNames) -> 
 def _legs_of_sign(
     before: str, behind: str, told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad]
 ) -> list[Compass]:
-    """ "stop sign for northbound traffic", "on the side street", else who or what is named last before the sign."""
+    """ "stop sign for northbound traffic", "on the side street", else the vehicle or road named last."""
     whom = rule("control.for").match(behind)
     if whom:
         return _legs_of_words(whom[0])
@@ -151,7 +151,7 @@ def _side_legs(roads: Sequence[MergedRoad]) -> list[Compass]:
 
 
 def _crossing_legs(before: str, told: Statement, vehicles: Sequence[VehicleFacts]) -> list[Compass]:
-    """The legs of those who come across the way of the one whom the sentence names: the side street is not his own."""
+    """Legs of vehicles that cross the path of the named vehicle: the side street is not its own."""
     named = [v.id for v in vehicles if rule("common.named_vehicle").given(vehicle=v.id).search(before)]
     whose = named or [told.subject or ""]
     own = {axis_of(v.heading) for v in vehicles if v.heading and v.id in whose}

@@ -143,7 +143,7 @@ def _kind_listed(kind: JunctionKind, stated: bool, listed: Approaches) -> Juncti
 
 
 def _access_kind(vehicles: Sequence[VehicleFacts]) -> JunctionKind:
-    """What joins the street where vehicles come out or turn in: an alley, if nobody uses anything else."""
+    """The kind of access that vehicles leave or enter: an alley, if no other access is used."""
     used = {place for v in vehicles for place in (v.origin, v.target) if place in DRIVES}
     return ALLEY if used == {ALLEY} else DRIVEWAY
 
@@ -189,7 +189,7 @@ def _merging(story: Sequence[Statement], roads: Sequence[MergedRoad]) -> bool:
 
 _RAMP_JOINS, _DRIVE_NAMED = rule("junction.ramp_joins"), rule("junction.drive_named")
 _SIDE_STREET = rule("junction.side_street")
-"""A turn that somebody makes, means or waits to make, into a road that needs a junction."""
+"""A turn that is made, meant or waited for, into a road that needs a junction."""
 
 
 def _one_sided(story: Sequence[Statement], roads: Sequence[MergedRoad]) -> bool:

@@ -89,7 +89,7 @@ def _on_stem(known: Sequence[VehicleFacts], halted: Sequence[Compass]) -> Vehicl
 
 
 def contradicted(stem: Compass, vehicles: Sequence[VehicleFacts]) -> bool:
-    """Whether a vehicle is told to come from where, with that stem, there is no road."""
+    """Whether a vehicle is told to come from a leg that does not exist with that stem."""
     told = [v for v in vehicles if v.heading and v.heading_stated]
     if any(v.heading == stem and v.maneuver not in ("turn_left", "turn_right") for v in told):
         return True

@@ -1,4 +1,4 @@
-"""Wordings as data: vocabulary, rules that refer to it, their examples. Knows no report and draws no conclusion.
+"""Wordings as data: vocabulary, rules that refer to it, their examples. Knows no report, draws no conclusion.
 
 `words("compass")`, `values("compass")` give a word class, `rule("lanes.each")` the rule of that id, `of_role("deed")`
 the rules of a role in their order. Data files: `vocabulary/*.yaml` and `rules/*.yaml`; see docs/language.md.

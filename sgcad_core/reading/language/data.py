@@ -39,7 +39,7 @@ class Language:
         return found | dict(own.words)
 
     def slot(self, name: str, file: str = "vocabulary", record: str = "") -> str:
-        """The pattern that a slot stands for, as one group. `file` and `record`: who asks, for the error."""
+        """The pattern that a slot stands for, as one group. `file` and `record`: the asking record, for the error."""
         own = self._class(name, file, record or name)
         if own.pattern is not None:
             return f"(?:{own.pattern})"

@@ -13,7 +13,7 @@ from sgcad_core.reading.roads.road_mentions import RoadMention, axis_of
 from sgcad_core.reading.text.compass import between, compass_of, turned
 
 
-def oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[Statement, ...]) -> CrashFacts:
+def turned_to_roads(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[Statement, ...]) -> CrashFacts:
     """Headings that are only relative to one another, turned so that V1 drives on the road and in the lanes told."""
     streets = [m for m in mentions if m.axis and m.kind not in JOINING]
     joined = [m for m in streets if m.relation == "other"] if any(m.kind == RAMP for m in mentions) else []
@@ -29,7 +29,7 @@ def oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[S
         return crash
     turn = between(lead.heading, way)
     return replace(
-        crash, vehicles=tuple(turned_vehicle(v, turn) for v in crash.vehicles), oriented=told_way is not None
+        crash, vehicles=tuple(turned_vehicle(v, turn) for v in crash.vehicles), turned_to_roads=told_way is not None
     )
 
 

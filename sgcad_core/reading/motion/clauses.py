@@ -1,8 +1,8 @@
-"""Whose deed is it: resolved sentences cut into segments, each with the vehicles that are its subject.
+"""Resolved sentences cut into segments, each with the vehicles that are its subject.
 
-A segment runs from one subject to the next. A mention is a subject where a verb follows it and no
-preposition stands before it ("behind V2", "struck V2"), or where a relative clause or participle begins
-("V2, which was stopped"). Pronouns take the subject of the sentence before. Knows no motion words.
+A segment runs from one subject to the next. A mention is a subject where a verb follows it and no preposition stands
+before it ("behind V2", "struck V2"), or where a relative clause or participle begins ("V2, which was stopped").
+Pronouns take the subject of the sentence before. Knows no motion words.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def resolve_sentences(sentences: Iterable[Sentence], roster: Roster) -> tuple[St
         text = text if roster.counted else called.resolve(text)
         text = _others(text, roster, current, s.role)
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
-        # one account in order: nobody is at rest for good before the blow, or asked of his health
+        # one account in order: no vehicle is at rest for good before the contact
         early = role in ("rest", "health") and all(t.role != "impact" for t in told)
         before = role == "other" and _begins_with_somebody(text) and all(t.role != "impact" for t in told)
         if before or (roster.counted and (early or (role == "other" and _SUBJECT.search(text)))):
@@ -78,7 +78,7 @@ def _begins_with_somebody(text: str) -> bool:
 
 
 def _of_several(text: str, before: bool) -> bool:
-    """Whether a following "they" means several vehicles: the last subject was all, a list, or nobody."""
+    """Whether a following "they" means several vehicles: the last subject was all, a list, or absent."""
     if _PRONOUN.match(text):
         return before
     if rule("clauses.everybody").search(text) or rule("clauses.list").search(text):
@@ -98,7 +98,7 @@ def _others(text: str, roster: Roster, current: str | None, role: Role) -> str:
 
 
 def _main_subject(text: str, current: str | None, role: Role, roster: Roster) -> str | None:
-    """The vehicle that a pronoun in the next sentence means; a number that is no vehicle's is nobody's."""
+    """The vehicle that a pronoun in the next sentence means; a number outside the roster counts as none."""
     if _PRONOUN.match(text) and current:
         return current
     first = next((m for m in MENTION.finditer(text) if m[0] in roster.ids), None)
@@ -129,7 +129,7 @@ def _cut(told: Statement, roster: Roster) -> list[Segment]:
 
 
 def _alike(segment: Segment, roster: Roster) -> Iterator[Segment]:
-    """The same of somebody else: "V2 was southbound, and so was V1"."""
+    """The same segment for another vehicle: "V2 was southbound, and so was V1"."""
     same = rule("clauses.so_was").search(segment.text)
     if same and (vehicle := same["v"].upper()) in roster.ids:
         yield segment._replace(subjects=(vehicle,), text=segment.text[: same.start()])
@@ -150,7 +150,7 @@ def _opening(told: Statement, starts: list[tuple[int, int, tuple[str, ...]]]) ->
 
 
 def subject_starts(told: Statement, roster: Roster) -> list[tuple[int, int, tuple[str, ...]]]:
-    """(where the mention stands, where its text begins, who) of each subject."""
+    """(place of the mention, begin of its text, vehicles) of each subject."""
     text = told.text
     starts: list[tuple[int, int, tuple[str, ...]]] = []
     pronoun = _PRONOUN.match(text)
@@ -175,7 +175,7 @@ def subject_starts(told: Statement, roster: Roster) -> list[tuple[int, int, tupl
 
 
 def _place_length(behind: str) -> int:
-    """How long the words are that say where a subject is, before its verb: who is named in them is no subject."""
+    """Length of the words that locate a subject before its verb: vehicles named in them are no subjects."""
     place = rule("clauses.located").match(behind)
     within = place is not None and "," not in place.group() and " and " not in place.group()
     return place.end() if place and within and _VERB.match(" " + behind[place.end() :]) else 0
@@ -221,8 +221,7 @@ def _whom(match: re.Match[str], roster: Roster) -> tuple[str, ...]:
 
 
 def _last_two(both: re.Match[str], roster: Roster) -> tuple[str, ...]:
-    """Whom "both" means where there are more: the two that are named last before it in its sentence; all where fewer
-    than two are."""
+    """Resolves "both" where there are more than two: the two named last before it in its sentence, else all."""
     named = [v for v in MENTION.findall(both.string[: both.start()]) if v in roster.ids]
     last = tuple(dict.fromkeys(reversed(named)))[:2]
     return last if len(last) > 1 else roster.ids

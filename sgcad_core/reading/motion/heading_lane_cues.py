@@ -52,7 +52,7 @@ def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
 
 
 def _note_origin(motion: VehicleMotion, text: str, told: re.Match[str], weight: int, by: str) -> None:
-    """Note the way of who comes from a side, where a verb of coming stands before it or nothing does."""
+    """Notes the heading of a vehicle that comes from a side, behind a verb of coming or first in the text."""
     came = compass_of(told["dir"])
     if came and (not text[: told.start()].strip() or rule("headings.came").search(text[: told.start()])):
         motion.add_value(motion.headings, max(1, weight - 1), turned(came, 180), told["dir"], by)

@@ -1,6 +1,6 @@
-"""What a vehicle did: turned, meant to turn, stopped, moved on, drifted, changed lanes, backed.
+"""Maneuver cues of a vehicle: turned, meant to turn, stopped, moved on, drifted, changed lanes, backed.
 
-Each deed is a word found in one segment, with its weight; `sgcad_core.reading.motion.maneuvers` decides.
+Each cue is a word found in one segment, with its weight; `sgcad_core.reading.motion.maneuvers` decides.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def read_maneuver_cues(motion: VehicleMotion, text: str, weight: int, number: in
 
 
 def _undone(kind: str, before: str, words: str) -> bool:
-    """Whether the words before a deed say that it was waited for or meant, done before what they tell, or of people."""
+    """Whether the words before a cue make it a hope, a plan, an earlier act, or an act of people on foot."""
     if kind in _HOPED and (_LATER.search(before) or rule("deeds.meant").search(before)):
         return not (rule("deeds.done").match(words) or rule("deeds.begins").search(before))
     if kind in _BEFORE and rule("deeds.earlier").search(before):
@@ -89,7 +89,7 @@ def _read_from_onto(motion: VehicleMotion, text: str, weight: int, number: int, 
 
 
 def _read_turn_to(motion: VehicleMotion, text: str, weight: int, number: int, at: int) -> None:
-    """ "Turned toward the north" of who heads east, and "wanted to go left": turns that no other word tells."""
+    """Turns that no other word tells: "turned toward the north" of an eastbound vehicle, "wanted to go left"."""
     if any(d.number == number and d.kind.removeprefix("want_") in _TURNS for d in motion.cues):
         return
     for m in rule("deeds.turn_to").finditer(text):

@@ -1,4 +1,4 @@
-"""One maneuver a vehicle: what it was doing when the crash began, decided from all its deeds.
+"""One maneuver a vehicle: its pre-crash maneuver, decided from all its cues.
 
 A turn that is told as an act beats a plan to turn; a standing vehicle stays standing unless it moved on.
 """
@@ -16,7 +16,7 @@ _SURE: tuple[Maneuver, ...] = ("parked", "backing", "u_turn")
 
 
 class Decision(NamedTuple):
-    """A maneuver, whether the text tells it, and the deed that decided."""
+    """A maneuver, whether the text tells it, and the cue that decided."""
 
     maneuver: Maneuver
     told: bool = True
@@ -53,7 +53,7 @@ def decide(motion: VehicleMotion, hit: tuple[Area | None, ...], same_way: Maneuv
 _STANDING = ("stopped", "parked")
 _CHANGES: tuple[Maneuver, ...] = ("lane_change_left", "lane_change_right")
 _SHIFTS: dict[str, Maneuver] = {"shifted_left": "lane_change_left", "shifted_right": "lane_change_right"}
-"""Moves aside: a change of lane of anybody but the report's own vehicle, which moves aside to make room."""
+"""Moves aside: a lane change of any vehicle but the report's own, which moves aside to make room."""
 SHIFTED = tuple(f"deeds.{kind}" for kind in _SHIFTS)
 """Rules of such moves: the hand is told, that it is a change of lane is not."""
 _MOVING = (
@@ -185,7 +185,7 @@ def _turn(motion: VehicleMotion, hit: tuple[Area | None, ...], same_way: Maneuve
 
 
 def _as_told(cue: ManeuverCue) -> Decision:
-    """The turn that a deed tells or wants."""
+    """The turn that a cue tells or wants."""
     return Decision("turn_left" if cue.kind.endswith("turn_left") else "turn_right", cue=cue)
 
 

@@ -1,7 +1,7 @@
-"""How each vehicle moved before the crash: heading, lane, speed, deeds, where it came from and meant to go.
+"""Motion of each vehicle before the crash: heading, lane, speed, maneuver cues, origin and target.
 
-Reads segments (one subject each) and the critical-event sentences that many reports carry. What an
-interview says counts only where nothing else does. Knows no contact and infers nothing across vehicles.
+Reads segments (one subject each) and the critical-event sentences that many reports carry. What an interview says
+counts only where nothing else does. Knows no contact and infers nothing across vehicles.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def read_motions(
 
 
 def _hear_interview(motion: VehicleMotion) -> None:
-    """Of whom nothing else tells what he did: what an interview tells, as if the report told it."""
+    """Raises the weight of interview cues of a vehicle whose motion is told nowhere else."""
     if motion.ordered or any(d.weight >= 2 or d.kind.startswith("code:") for d in motion.cues):
         return
     motion.cues = [d._replace(weight=3) for d in motion.cues]
@@ -106,7 +106,8 @@ def _read(motion: VehicleMotion, segment: Segment, vehicle: str, roster: Roster,
 
 
 def _until_stopped(text: str, after: bool) -> str:
-    """Without the end of a way that a blow began: "spun and stopped in the road", "stopped facing west"."""
+    """The text without the end of a motion that the impact began: "spun and stopped in the road", "stopped facing
+    west"."""
     found = rule("motion_reader.stopped_at_last").search(text) or (
         rule("motion_reader.stopped_there").search(text) if after else None
     )
@@ -118,7 +119,7 @@ def _until_stopped(text: str, after: bool) -> str:
 
 
 def _until_hit(text: str) -> str:
-    """The part before the blow: what follows it is the effect, not the approach."""
+    """The part before the contact: what follows it is the effect, not the approach."""
     for m in HIT.finditer(text):
         if not rule("motion_reader.no_hit").search(text[: m.start()]):
             moving = rule("motion_reader.moving_hit").match(m.group())

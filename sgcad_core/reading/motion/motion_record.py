@@ -61,7 +61,7 @@ class VehicleMotion:
     watched: bool = False
     """Whether it is the report's own vehicle."""
     ordered: bool = False
-    """Whether the deeds are one account in order, up to the contact."""
+    """Whether the cues are one account in order, up to the contact."""
     headings: list[WeightedValue] = field(default_factory=list)
     """In the order of the text."""
     exits: list[Compass] = field(default_factory=list)
@@ -82,11 +82,11 @@ class VehicleMotion:
     read."""
 
     def has_cue(self, kind: str, least: int = 1) -> bool:
-        """Whether a deed is told with at least that weight."""
+        """Whether a cue of that kind has at least that weight."""
         return self.cue(kind, least) is not None
 
     def cue(self, kind: str, least: int = 1) -> ManeuverCue | None:
-        """The first deed of that kind that is told with at least that weight."""
+        """The first cue of that kind with at least that weight."""
         return next((d for d in self.cues if d.kind == kind and d.weight >= least), None)
 
     def read(self, what: str, words: str, rule: str) -> None:

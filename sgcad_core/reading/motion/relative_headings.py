@@ -30,7 +30,9 @@ def relative(crash: CrashTold, inferred: CrashInferred, a: str, b: str, pairs: l
     _add_maneuvers(score, crash, inferred, a, b)
     mention = next((x for x in pairs if {a, b} == {x.actor, x.other}), None)
     if mention:
-        score[0] += 0.5 if is_sideswipe(mention) else 0.0  # five in six sideswipes are of two who drive the same way
+        score[0] += (
+            0.5 if is_sideswipe(mention) else 0.0
+        )  # five in six sideswipes are of vehicles that drive the same way
         if not (_on_foot(crash, a, b) and {mention.actor_area, mention.other_area} <= {"front", None}):
             _add_contact(score, inferred, a, b, mention)  # a front meets people whichever way they walk
     return max(QUARTERS, key=lambda q: score[q])
@@ -91,9 +93,9 @@ def _add_kinds(score: dict[int, float], crash: CrashTold, inferred: CrashInferre
     kinds = {v.id: v.kind for v in crash.roster.vehicles}
     for me, you in ((a, b), (b, a)):
         if inferred.maneuvers[me] == "turn_right" and kinds[you] == "bicycle" and kinds[me] != "bicycle":
-            score[0] += 1.0  # a right turn cuts off who rides beside it, seldom who comes the other way
+            score[0] += 1.0  # a right turn cuts off a cyclist beside it, seldom an oncoming one
     for me, sign in ((a, 1), (b, -1)):
-        if kinds[me] == "pedestrian":  # who is told nothing else steps off the curb on the right
+        if kinds[me] == "pedestrian":  # a pedestrian without a told path steps off the curb on the right
             score[90 if sign == 1 else 270] += 0.4
 
 
@@ -105,7 +107,7 @@ def _add_contact(score: dict[int, float], inferred: CrashInferred, a: str, b: st
     expected = contact_turn("front" if leads[0] else one, "front" if leads[1] else two)
     if expected is None:
         return
-    expected += 180 * sum(leads)  # who backs leads with its back, and heads the other way
+    expected += 180 * sum(leads)  # a backing vehicle leads with its back, and heads the other way
     bent = expected + bend_deg(inferred.maneuvers[a], one, two) - bend_deg(inferred.maneuvers[b], two, one)
     for q in QUARTERS:
         score[q] += (1.5 if one and two else 1.2) * (1 - apart(q, bent) / 90)

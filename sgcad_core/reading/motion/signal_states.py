@@ -1,7 +1,7 @@
-"""What a traffic signal showed to each vehicle when it came to the crash, where the report tells it.
+"""The state of the traffic signal for each vehicle when it came to the crash, where the report tells it.
 
-The crash's own sentences come first, of them the last; then what drivers and witnesses said, if they agree. What
-somebody only thought, and signals that flash, tell nothing. Knows no map.
+The crash's own sentences come first, of them the last; then interviews, if they agree. Guesses and flashing signals
+tell nothing. Knows no map.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class SignalTold(NamedTuple):
 
 
 def signal_states(segments: Iterable[Segment]) -> Mapping[str, SignalTold]:
-    """By vehicle; whoever's signal is not told, or told in two ways by those who are quoted, is not in it."""
+    """Signal by vehicle; a vehicle whose signal is not told, or told in two ways by interviews, is left out."""
     story: dict[str, list[SignalTold]] = {}
     quoted: dict[str, list[SignalTold]] = {}
     for segment in segments:

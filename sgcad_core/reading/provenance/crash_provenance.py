@@ -70,7 +70,7 @@ class FactBuilder:
 
 
 def default(field: str, value: Value, rule: str) -> Fact:
-    """A fact that nobody tells."""
+    """A fact that no sentence tells."""
     return Fact(field=field, value=value, basis="default", status="default", rule=rule, confidence=CONFIDENCE.default)
 
 

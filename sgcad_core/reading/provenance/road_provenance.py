@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from sgcad_core.kinds import FOUR_LEG, T
 from sgcad_core.reading.provenance.crash_provenance import FactBuilder
-from sgcad_core.reading.roads.lane_sources import stated
+from sgcad_core.reading.roads.lane_sources import stated_values
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.text.compass import COMPASS, NAMES, turned
@@ -100,7 +100,7 @@ def _road(builder: FactBuilder, at: str, road: RoadFact) -> Iterator[Fact]:
 
 
 def _lanes(builder: FactBuilder, at: str, road: RoadFact) -> Iterator[Fact]:
-    for name, value in stated(road.lanes).items():
+    for name, value in stated_values(road.lanes).items():
         if name == "own":
             continue
         kind, _, way = name.partition(" ")

@@ -54,7 +54,7 @@ class LaneFacts:
     own: int | None = None
     """Lanes in the direction of the vehicle that the text speaks of: "in lane two of three lanes"."""
     where: Mapping[str, Source] = field(default_factory=dict, compare=False, repr=False)
-    """Where each of them was read, by the names of `sgcad_core.reading.roads.lane_sources.stated`."""
+    """Where each of them was read, by the names of `sgcad_core.reading.roads.lane_sources.stated_values`."""
 
     @property
     def empty(self) -> bool:
@@ -236,7 +236,7 @@ def divided_and_median(text: str) -> tuple[bool | None, Median | None]:
 
 
 _IN_EACH = rule("turn_lanes.in_each")
-"""Not "in the lane for left-turning traffic": somebody may wait there."""
+"""Not "in the lane for left-turning traffic": a vehicle may wait there."""
 
 
 def spelled_out(text: str) -> str:

@@ -29,7 +29,7 @@ _BARE_CURVE = rule("road_details.bare_curve")
 
 
 def curves(told: Sequence[Statement], headings: Mapping[str, Compass]) -> tuple[Curve, ...]:
-    """Curves in order; one whose side is not told is taken to the left of the first vehicle."""
+    """Curves in order; one without a told side is taken to the left of the first vehicle."""
     story = [t for t in told if t.role in STORY_ROLES]
     found = tuple(c for t in story for c in _curves(t, headings))
     bare = [Source(t.number, m[0], _BARE_CURVE.id) for t in story if (m := _BARE_CURVE.search(t.text))]

@@ -1,7 +1,7 @@
 """The roads of a crash as its narrative tells them.
 
-Roads with lanes as stated, their junction, limits and curves, and who is on them. What the text leaves open
-stays None here; `sgcad_core.reading.layout.layout_facts` fills it. Knows no road network format.
+Roads with lanes as stated, their junction, limits, curves and vehicles. What the text leaves open stays None here;
+`sgcad_core.reading.layout.layout_facts` fills it. Knows no road network format.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from sgcad_core.reading.junctions.approach_lanes import Approaches, approaches_o
 from sgcad_core.reading.junctions.junction import CIRCLE_LANES, JunctionFacts, junction_of
 from sgcad_core.reading.junctions.unsupported_places import unsupported_places
 from sgcad_core.reading.language import of_role, rule
-from sgcad_core.reading.motion.absolute_headings import oriented
+from sgcad_core.reading.motion.absolute_headings import turned_to_roads
 from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.lanes import LaneFacts
@@ -67,7 +67,7 @@ class RoadFacts:
     """All roads of a crash, the streets first; `crash`: the vehicles that the roads must carry.
 
     Where no heading is told, the headings in `crash` are turned to fit the roads; a told lane ("in the eastbound
-    lanes") then makes them `oriented`.
+    lanes") then makes them `turned_to_roads`.
     """
 
     roads: tuple[RoadFact, ...]
@@ -79,7 +79,7 @@ class RoadFacts:
     beside: tuple[Beside, ...] = ()
     """What the story tells of the edges of its roads."""
     crosswalk: bool = False
-    """Whether it tells a marked crosswalk, or of somebody on foot who was struck at a junction."""
+    """Whether it tells a marked crosswalk, or a pedestrian struck at a junction."""
     urban: bool = False
     closed: ClosedLanes | None = None
     """Lanes that a work zone closes, where they can be drawn."""
@@ -107,7 +107,7 @@ class RoadFacts:
 def roads_of(told: tuple[Statement, ...], roster: Roster, crash: CrashFacts) -> RoadFacts:
     """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
     mentions, crash = _alleys(road_mentions(_telling(told), roster.ids), crash)
-    crash = oriented(crash, mentions, told)
+    crash = turned_to_roads(crash, mentions, told)
     driven = tuple(v for v in crash.vehicles if v.kind != "pedestrian") or crash.vehicles
     headings = {v.id: v.heading for v in driven if v.heading}
     limits, bends = speed_limits(told, headings), curves(told, headings)
@@ -162,7 +162,7 @@ def _closable(closed: ClosedLanes, junction: JunctionFacts, roads: tuple[RoadFac
 
 
 def _alleys(mentions: tuple[RoadMention, ...], crash: CrashFacts) -> tuple[tuple[RoadMention, ...], CrashFacts]:
-    """An alley is the road of a crash within it, into which nobody just turns; else it joins as driveways do."""
+    """An alley is the road of a crash within it, if no vehicle just turns into it; else it joins as driveways do."""
     within = {v for m in mentions if m.kind == ALLEY and m.how == "on" for v in m.vehicles}
     joining = {v.id for v in crash.vehicles if ALLEY in (v.origin, v.target)}
     turns = {v.id for v in crash.vehicles if v.maneuver in QUARTER_DEG}
@@ -206,7 +206,7 @@ def uncounted(road: RoadFact) -> RoadFact:
 
 
 def _placed(roads: tuple[RoadFact, ...], approaches: Approaches) -> tuple[RoadFact, ...]:
-    """The roads, streets on other axes than those of the two roads whose approaches are listed put there."""
+    """The roads, with streets on other axes than those of the two roads whose approaches are listed put there."""
     axes = approaches.crossing
     streets = [r for r in roads if r.kind not in JOINING and r.axis]
     if len(axes) != 2 or {r.axis for r in streets} <= {*axes}:
@@ -219,7 +219,7 @@ def _placed(roads: tuple[RoadFact, ...], approaches: Approaches) -> tuple[RoadFa
 
 
 def _center_lane_elsewhere(road: RoadFact, roads: tuple[RoadFact, ...]) -> RoadFact:
-    """A two-lane road has no center turn lane where the other road has one: somebody only turned into that."""
+    """A two-lane road has no center turn lane where the other road has one: a vehicle only turned into that."""
     others = any(r.lanes.center_turn_lane and r.lanes.total != 2 for r in roads if r is not road)
     if not (others and road.lanes.center_turn_lane and road.lanes.total == 2):
         return road

@@ -1,7 +1,7 @@
-"""Every road that a report mentions, in order: noun phrase, compass axis, who drives on it, lanes stated.
+"""Every road that a report mentions, in order: noun phrase, compass axis, vehicles on it, lanes stated.
 
-A mention is the noun phrase around a road word ("the intersecting two-lane, two-way road") with what stands
-behind it up to the next mention. Which mentions are one and the same road is decided elsewhere.
+A mention is the noun phrase around a road word ("the intersecting two-lane, two-way road") with what stands behind it
+up to the next mention. `sgcad_core.reading.roads.road_merge` joins mentions of one road.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Literal
 from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.roads.lane_sources import heard
+from sgcad_core.reading.roads.lane_sources import with_sources
 from sgcad_core.reading.roads.lanes import LaneFacts, lane_facts
 from sgcad_core.reading.text.compass import COMPASS, compass_of
 from sgcad_core.records.specs import Compass
@@ -71,7 +71,7 @@ def _sentence(told: Statement, ids: tuple[str, ...]) -> Iterator[RoadMention]:
     text = told.text
     spans = list(noun_phrases(text))
     if not spans:
-        facts = heard(lane_facts(text), told.number, text)
+        facts = with_sources(lane_facts(text), told.number, text)
         if not facts.empty:
             yield from _by_axis(_bare(told, facts))
         return
@@ -82,7 +82,7 @@ def _sentence(told: Statement, ids: tuple[str, ...]) -> Iterator[RoadMention]:
 
 
 def _by_axis(mention: RoadMention) -> Iterator[RoadMention]:
-    """A mention without a road word, once for each axis whose lanes it tells."""
+    """A mention without a road word, once for each axis of the lanes that it tells."""
     ways = {axis_of(c) for c in COMPASS if c in mention.lanes.toward}
     if len(ways) < 2:
         yield mention
@@ -119,7 +119,7 @@ def _mention(
     lead, phrase, behind = parts
     first, ids = place
     said = (_lead_tail(lead) if first else "") + phrase + behind
-    facts = heard(lane_facts(said), told.number, said)
+    facts = with_sources(lane_facts(said), told.number, said)
     vehicles, how = _drivers(lead, behind, ids)
     toward = _toward(phrase)
     axis = axis_in(phrase) or (axis_of(toward) if toward else None) or _running(behind) or _lane_direction(lead)
@@ -173,7 +173,7 @@ def _relation(phrase: str, lead: str) -> Relation | None:
 
 
 def _drivers(lead: str, behind: str, ids: tuple[str, ...]) -> tuple[tuple[str, ...], How | None]:
-    """Who drives on the road mentioned, told by the verb before or the relative clause behind."""
+    """Vehicles on the road mentioned, told by the verb before or the relative clause behind."""
     relative = rule("mentions.relative").match(behind)
     if relative and rule("mentions.relative_begins").match(behind):
         return (relative[1],), "on"

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.kinds import ALLEY, JOINING
-from sgcad_core.reading.roads.lane_sources import also, both
+from sgcad_core.reading.roads.lane_sources import derived_sources, with_sources_of_both
 from sgcad_core.reading.roads.lanes import LaneFacts
 from sgcad_core.reading.roads.road_mentions import Kind, RoadMention, axis_of
 from sgcad_core.reading.text.compass import turned
@@ -59,7 +59,7 @@ def merged(first: LaneFacts, more: LaneFacts) -> LaneFacts:
         center_turn_lane=first.center_turn_lane or more.center_turn_lane, median=first.median or more.median,
         divided=more.divided if first.divided is None else first.divided, one_lane=first.one_lane or more.one_lane,
     )  # fmt: skip
-    return both(found, first, more)
+    return with_sources_of_both(found, first, more)
 
 
 def merge_roads(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]) -> list[MergedRoad]:
@@ -87,7 +87,7 @@ def merge_roads(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]
                 road.lanes = replace(road.lanes, one_lane=True)
     for road in roads:
         if road.lanes.one_way and road.lanes.one_lane and not (lane_count(road.lanes) or road.lanes.toward):
-            road.lanes = replace(road.lanes, total=1, where=also(road.lanes, "total", "one_way"))
+            road.lanes = replace(road.lanes, total=1, where=derived_sources(road.lanes, "total", "one_way"))
     return roads
 
 
@@ -96,7 +96,7 @@ def _with_own(m: RoadMention, headings: Mapping[str, Compass]) -> RoadMention:
     way = next((headings[v] for v in m.vehicles if v in headings), None)
     if not m.lanes.own or not way or way in m.lanes.toward:
         return m
-    where = also(m.lanes, f"toward {way}", "own")
+    where = derived_sources(m.lanes, f"toward {way}", "own")
     return replace(m, lanes=replace(m.lanes, toward={**m.lanes.toward, way: m.lanes.own}, where=where))
 
 

@@ -87,7 +87,7 @@ def _by_words(text: str, rules: Iterable[Rule]) -> Iterator[Speed]:
 
 
 def _described(text: str, names: StreetNames) -> Iterator[Speed]:
-    """Speeds in a sentence about a road on which nobody drives, or in brackets behind a road or with its lanes."""
+    """Speeds in a sentence about a road without vehicles, or in brackets behind a road or with its lanes."""
     place = rule("speed_limits.alone")
     if not rule("common.vehicle").search(text) and not rule("speed_limits.driving").search(text):
         if rule("speed_limits.road").search(text) or next(names.in_text(text), None):

@@ -1,7 +1,8 @@
-"""Which way named streets run: "northbound on Pine", "Route 7 goes east and west", "V2 was on Elm Street".
+"""Axes of named streets: "northbound on Pine", "Route 7 goes east and west", "V2 was on Elm Street".
 
-A street is known by the first words of its name, without "Street" or "Road", or by its number. Of two streets of which
-one's axis is told, the other runs where somebody else drives. Reads resolved sentences. Knows no junction and no lane.
+A street is known by the first words of its name, without "Street" or "Road", or by its number. Of two streets with one
+told axis, the other runs along the heading of the other vehicles. Reads resolved sentences. Knows no junction and no
+lane.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ from sgcad_core.records.specs import Compass
 
 Side = Literal["left", "right"]
 InGore = Literal["stands", "strikes", "crosses", "leaves"]
-"""What one does in a gore; who leaves crosses it into the ramp."""
+"""Acts in a gore; "leaves" crosses it into the ramp."""
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ _AWAY: dict[str, Side] = {"lane_change_left": "right", "lane_change_right": "lef
 
 
 def closed_lanes(told: Sequence[Statement], vehicles: Sequence[VehicleFacts]) -> ClosedLanes | None:
-    """The closed lanes of a story, None where it tells of none. Which they are follows from who leaves them, where the
-    story does not say it: else the right one."""
+    """The closed lanes of a story, None where it tells none. Without a told side it is that of the vehicle that leaves
+    the lane, else the right one."""
     leaves = next((v for v in vehicles if v.maneuver in (*_AWAY, "merge") and v.heading), None)
     lead = leaves or next((v for v in vehicles if v.heading), None)
     if lead is None or lead.heading is None:
@@ -68,7 +68,7 @@ def median_opening(told: Sequence[Statement]) -> Source | None:
 
 
 def in_gores(told: Sequence[Statement]) -> dict[str, InGore]:
-    """Vehicles that a story puts into a gore: who stands there, strikes something there, or crosses it, and whither."""
+    """Vehicles in a gore, by what they do: stand there, strike an object there, cross it, or leave by the ramp."""
     found: dict[str, InGore] = {}
     for t in _story(told):
         for match in _IN_GORE.finditer(t.text):
@@ -79,7 +79,7 @@ def in_gores(told: Sequence[Statement]) -> dict[str, InGore]:
 
 
 def names_closure(told: Sequence[Statement]) -> bool:
-    """Whether a story tells of a closed lane at all, though perhaps not for whom."""
+    """Whether a story tells a closed lane at all, even without a direction."""
     return any(CLOSED_LANES.search(t.text) or _CLOSURE.search(t.text) for t in _story(told))
 
 

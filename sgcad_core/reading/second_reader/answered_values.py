@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 def model_claims(said: Answered) -> Claims:
-    """What a model's answers say, each value with probability and grounding. What is null in them is no claim."""
+    """What a model's answers say, each value with probability and grounding. A null in them is no claim."""
     sure = _Certainty(said.p, said.nats, said.told)
     found: Claims = {}
     for i, actor in enumerate(said.behavior.actors):
@@ -93,7 +93,7 @@ def _edges_of(actor: Actor, legs: tuple[Leg, ...]) -> tuple[str, ...]:
 
 
 def _heading(road: str) -> Compass | None:
-    """Where one drives who comes in on a leg ("N") or on its outer piece ("N_outer")."""
+    """Heading of a vehicle that comes in on a leg ("N") or on its outer piece ("N_outer")."""
     bearing = road.removesuffix("_outer")
     return turned(bearing, 180) if bearing in COMPASS else None
 

@@ -38,7 +38,7 @@ _ONWARD = (
     "lane_change_right",
     "crossing_centerline",
 )
-"""Maneuvers of those who go on the way that they head."""
+"""Maneuvers that keep to the initial heading."""
 KINDS = (
     "kind", "heading", "maneuver", "exit", "lane", "speed", "contact", "areas", "legs", "lanes", "turns", "median",
     "curve", "limit", "control", "light", "weather", "surface",
@@ -58,8 +58,8 @@ class Claim(NamedTuple):
     p: float = 1.0
     nats: float = 0.0
     also: tuple[Any, ...] = ()
-    """Other values that what is told allows as well: a corner is two sides, who steers left in evasion also leaves his
-    lane to the left, and a lane on either edge is "left" or "right" however many lanes a reader sees."""
+    """Other values that the told one allows as well: a corner is two sides, evasive steering to the left also leaves
+    the lane to the left, and a lane on either edge is "left" or "right" whatever the number of lanes."""
 
 
 Claims = dict[str, Claim]
@@ -118,7 +118,7 @@ def _sides_told(contact: ContactFacts) -> bool:
 
 
 def _corners(contact: ContactFacts) -> tuple[Any, ...]:
-    """Sides by id that told corners allow as well; a side that nobody tells allows no other."""
+    """Sides by id that told corners allow as well; an untold side allows no other."""
     mays = [
         may if len(may) < len(AREAS) else (area,)
         for may, area in ((contact.striker_may, contact.striker_area), (contact.struck_may, contact.struck_area))
@@ -127,7 +127,7 @@ def _corners(contact: ContactFacts) -> tuple[Any, ...]:
 
 
 def _ways(crash: CrashFacts, drawn: tuple[Leg, ...]) -> Claims:
-    """Lane and way out of everybody: a lane may be told by a word, a way out follows from a turn."""
+    """Lane and way out of every vehicle: a lane may be told by a word, a way out follows from a turn."""
     legs = {leg.bearing: leg for leg in drawn}
     found: Claims = {}
     for v in crash.vehicles:
@@ -220,5 +220,5 @@ def by_id(sides: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
 
 
 def vehicles_of(crash: CrashFacts) -> frozenset[str]:
-    """Everybody whom the rules know by an id."""
+    """Ids of all actors that the rules know."""
     return frozenset([*(v.id for v in crash.vehicles), *(o.id for o in crash.others)])

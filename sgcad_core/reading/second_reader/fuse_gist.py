@@ -57,7 +57,7 @@ class Decided(NamedTuple):
 
 
 def decide(opinion: Opinion, say: RuleValues) -> dict[str, Decided]:
-    """The value of every field that somebody has one for."""
+    """The value of every field that a reader has one for."""
     found = {}
     for key in FIELDS:
         heard, weights = opinion.heard.get(key), opinion.weights.get(key)
@@ -94,7 +94,7 @@ def model_right(weights: Weights, p: float, told: float, nats: float = 0.0, tell
 
 
 # ------------------------------------------------------------------ taken over
-def fused(reading: Reading, opinion: Opinion) -> Reading:
+def fused_with_gist(reading: Reading, opinion: Opinion) -> Reading:
     """The reading with what the second reader knows better; each change is a fact of the basis "model".
 
     Of numbered reports nothing is changed: the second reader is asked for the subject's first contact alone.
@@ -181,7 +181,7 @@ _NEEDED = (*_CHANGES, "met")
 
 
 def with_contact(crash: CrashFacts, decided: Mapping[str, Decided]) -> CrashFacts:
-    """A crash whose contact the rules cannot read, with the one that the second reader is sure of; else as it is."""
+    """A crash whose contact the rules cannot read, with the one that the second reader is sure of; else unchanged."""
     if not (crash.gap and crash.gap.unread) or not all(key in decided and decided[key].p >= FILLS for key in _NEEDED):
         return crash
     value = {key: decided[key].value for key in _NEEDED}
@@ -201,7 +201,7 @@ def with_contact(crash: CrashFacts, decided: Mapping[str, Decided]) -> CrashFact
 
 
 def _contact(mine: Area, theirs: Area) -> ContactFacts:
-    """Who strikes is who touches with its front; of two fronts or none the other one."""
+    """The striker is the one that touches with its front; of two fronts or none the other vehicle."""
     if mine == "front" and theirs != "front":
         return ContactFacts(SUBJECT, _PARTNER, mine, theirs, True)
     return ContactFacts(_PARTNER, SUBJECT, theirs, mine, True)

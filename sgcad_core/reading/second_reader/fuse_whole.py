@@ -41,7 +41,7 @@ _LEARNED = ("none", FOUR_LEG, T, DRIVEWAY, RAMP)
 """Kinds of junctions whose layouts the embedded model has learned; of a ramp without the lane in which one merges."""
 
 
-def whole(reading: Reading, opinion: Opinion) -> Reading:
+def fused_with_answer(reading: Reading, opinion: Opinion) -> Reading:
     """The reading with what the model's answers to the whole report know better; as it is where they are of no use."""
     if opinion.answered is None or reading.crash.unnumbered or reading.crash.near_crash:
         return reading
@@ -143,7 +143,7 @@ def agree(key: str, rule: Claim, said: Claim) -> bool:
 
 # ------------------------------------------------------------------ where the rules can read no crash
 def _filled(reading: Reading, said: Answered, heard: Claims) -> Reading:
-    """The reading with the model's whole crash, if it is sure of who met whom with which sides and where both drove."""
+    """The reading with the model's whole crash, if the model is sure of the contact, its sides and both headings."""
     if not said.behavior.contacts or reading.roads.junction.kind not in _LEARNED:
         return reading
     first = said.behavior.contacts[0]

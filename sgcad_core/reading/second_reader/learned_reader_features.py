@@ -1,7 +1,7 @@
-"""What a learned reader sees of a report: the words around whoever met, and what the rules made of them.
+"""Features of the learned reader: the words around the contact's pair, and the values of the rules.
 
-Words are those of the sentences with everybody named by number, so that the subject, whom it met and anybody else are
-three words, and every number is one. Nothing is weighed here; knows no weights.
+Words are those of the sentences with every actor named by number, so that the subject, its partner and any other actor
+are three words, and every number is one. Nothing is weighed here; knows no weights.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _BLOWS = 3
 
 
 class Account(NamedTuple):
-    """A report as its reading's stages left it, and whom the subject met by the rules."""
+    """A report as its reading's stages left it, and the subject's partner by the rules."""
 
     reading: Reading
     statements: tuple[Statement, ...]
@@ -63,8 +63,8 @@ def account_of(narrative: str) -> Account:
 
 # ------------------------------------------------------------------ words
 def words(account: Account) -> set[str]:
-    """One to three words in a row, of the whole text, before, in and behind the contact's sentence, of the stretches
-    about the subject and about whom it met, and of the last such stretch up to the contact."""
+    """One to three words in a row: of the whole text; before, in and behind the contact's sentence; of the stretches
+    about the subject and about its partner; of the last such stretch up to the contact."""
     hit = _contact_at(account.crash_told)
     found: set[str] = set()
     for told in account.statements:
@@ -104,7 +104,7 @@ def _tokens(text: str, met: str | None) -> list[str]:
 
 
 def _role(word: str, met: str | None) -> str:
-    """A word, or which of the three somebody is; numbers are one word."""
+    """A word, or its actor's part (subject, partner, third); numbers are one word."""
     if word.isdigit():
         return "NUM"
     if not (word[0] == "v" and word[1:].isdigit()):
@@ -122,7 +122,7 @@ def _grams(said: Sequence[str], most: int) -> Iterator[str]:
 
 # ------------------------------------------------------------------ what the rules say
 def readings(account: Account) -> set[str]:
-    """Values of the rules, alone and in pairs; how each was come by; deeds and contacts as they were read."""
+    """Values of the rules, alone and in pairs, with their rules; maneuver cues and contacts as they were read."""
     found = {*_values(account.say), *_facts(account), *_cue_features(account), *_contact_features(account.crash_told)}
     crash = account.reading.crash
     found |= {f"vehicles={min(len(crash.vehicles), 4)}", f"near={crash.near_crash is not None}"}

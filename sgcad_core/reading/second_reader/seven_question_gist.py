@@ -78,7 +78,7 @@ def meeting(crash: CrashFacts) -> ContactFacts | None:
 
 
 def partner(contact: ContactFacts) -> str:
-    """Whom the subject met."""
+    """The actor that the subject met."""
     return contact.struck if contact.striker == SUBJECT else contact.striker
 
 

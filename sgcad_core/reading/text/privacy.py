@@ -1,8 +1,7 @@
-"""Takes what says who somebody was, not how the crash went, out of a narrative.
+"""Takes personal data out of a narrative; the course of the crash stays.
 
 Sex, age, names, licence, health and injury data, numbers of reports, badges and plates are of no use to a scenario and
-never reach a prompt.
-Motion is never touched: a sentence goes only if it tells of persons alone. Knows no crash facts.
+never reach a prompt. Motion is never touched: a sentence goes only if it tells of persons alone. Knows no crash facts.
 """
 
 from __future__ import annotations
@@ -42,10 +41,11 @@ def redacted(text: TracedText) -> TracedText:
 
 
 def _parts_without_persons(sentences: Iterable[TracedText]) -> Iterator[TracedText]:
-    """Sentences without persons; where one goes that named the vehicle, the next one's "he" or "she" names it.
+    """Sentences without persons; after a dropped sentence that named the vehicle, "he" or "she" in the next one names
+    it.
 
-    Of one about the driver whom a study watched it stays that he drives: all that follows is about him, be it in the
-    same sentence.
+    A dropped sentence about the driver whom a study watched leaves "is driving": all that follows is about that driver,
+    even in the same sentence.
     """
     named: str | None = None
     for sentence in sentences:

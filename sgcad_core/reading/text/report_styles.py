@@ -1,7 +1,9 @@
-"""Narratives of driving studies: the one who is watched is the "subject", the others are told by their part.
+"""Styles of reports that are brought to one form: driving studies, first-person statements, printed forms.
 
-They leave out articles and nouns ("Lead vehicle brakes", "Subject must stop") and tell the driver by pronoun. Here they
-are brought to the words that other reports use, so that everything behind reads them alike.
+Driving studies call the watched vehicle the "subject", leave out articles and nouns ("Lead vehicle brakes", "Subject
+must stop") and tell the driver by pronoun. In the first person, the narrator's vehicle becomes "the reporting vehicle".
+Of a text with check boxes and numbered sections only the account is read: a line stays if it is prose, not in capitals,
+without boxes. Knows no form by name.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ def tells_study(text: str) -> bool:
 
 
 def named_in_full(text: TracedText) -> TracedText:
-    """The normalized text with articles and nouns for everybody; unchanged where it is no study's."""
+    """The normalized text with articles and nouns for every actor; unchanged where it is no study's."""
     if not tells_study(text.text):
         return text
     numbered = bool(rule("common.vehicle").search(text.text))
@@ -29,12 +31,12 @@ def named_in_full(text: TracedText) -> TracedText:
 
 
 def tells_first_person(text: str) -> bool:
-    """Whether the teller of a normalized text that numbers nobody is in the crash."""
+    """Whether the narrator of a normalized text without vehicle numbers is in the crash."""
     return bool(rule("first_person.teller").search(text)) and not has_actor_numbers(text)
 
 
 def in_third_person(text: TracedText) -> TracedText:
-    """The normalized text with a name for the teller's vehicle; unchanged where somebody else tells."""
+    """The normalized text with a name for the narrator's vehicle; unchanged in the third person."""
     if not tells_first_person(text.text):
         return text
     for spelling in of_role("first_person"):
@@ -43,7 +45,7 @@ def in_third_person(text: TracedText) -> TracedText:
 
 
 _FEWEST_MARKS = 3
-"""Below, boxes and sections are somebody's punctuation."""
+"""Below, boxes and sections are punctuation."""
 
 
 def is_form(text: str) -> bool:
@@ -52,7 +54,7 @@ def is_form(text: str) -> bool:
 
 
 def account(text: TracedText) -> TracedText:
-    """The text without a form's own lines; characters keep their places. What is no form stays as it is."""
+    """The text without a form's own lines; characters keep their places. A text that is no form stays as it is."""
     return text.sub(rule("forms.line"), _prose_of_line) if is_form(text.text) else text
 
 

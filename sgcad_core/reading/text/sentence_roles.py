@@ -21,7 +21,7 @@ STORY_ROLES: frozenset[Role] = CRASH_ROLES | {"other"}
 HIT = rule("roles.hit")
 _ROAD = rule("roles.road")
 _BESIDE: tuple[Role, ...] = ("factors", "police", "towing", "health", "injury", "restraint")
-"""Noise in whose sentences a crash may be told too."""
+"""Noise roles whose sentences may tell a crash, too."""
 
 
 def role_of(text: str) -> Role:

@@ -1,4 +1,4 @@
-"""How fast somebody drove, as told: "at 45 mph", "doing 35", "15 mph for V1". Knows no road and infers nothing.
+"""Told speeds of vehicles: "at 45 mph", "doing 35", "15 mph for V1". Knows no road and infers nothing.
 
 A number is a speed if its unit stands behind it, or a word of driving before it. In a sentence that speaks of a limit
 only the latter count.
@@ -54,7 +54,8 @@ def read_speed(motion: VehicleMotion, text: str, weight: int) -> None:
 
 
 def read_speeds_beside(motions: Mapping[str, VehicleMotion], told: Sequence[Statement]) -> None:
-    """Speeds of those whose own segments tell none: of a sentence that names nobody else, or right behind the name."""
+    """Speeds of vehicles whose own segments tell none: from a sentence that names no other vehicle, or right behind the
+    name."""
     lacking = {v for v, motion in motions.items() if not motion.speeds_mph}
     for t in told:
         for vehicle, speed in _owned(t) if lacking else ():
@@ -87,6 +88,6 @@ def _owned(told: Statement) -> Iterator[tuple[str, Speed]]:
 
 
 def _opens(text: str, named: Sequence[re.Match[str]], speed: Speed) -> bool:
-    """Whether a speed stands before the first vehicle, whose it is: "At 40 mph a northbound V1"."""
+    """Whether a speed stands before the first vehicle and belongs to it: "At 40 mph a northbound V1"."""
     before = text[: named[0].start()] if named else ""
     return speed.end <= len(before) and rule("speeds.opening").fullmatch(before) is not None
