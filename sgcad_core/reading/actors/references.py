@@ -33,7 +33,7 @@ def number_actors(text: TracedText) -> TracedText:
     """The normalized text with a number for every actor; unchanged if there is any number."""
     if has_actor_numbers(text.text):
         return text
-    automated = _automated(text.text)
+    automated = any(m["automated"] for m in _PHRASE.finditer(text.text))
     for name in _companies(text.text):
         text = text.sub(rule("references.short_name").given(name=re.escape(name)), rf"\1 {name} AV")
     cast = NamedActors([Actor(1, "vehicle", set(), subject=True)] if automated else [], automated)
@@ -55,11 +55,6 @@ def _numbered(block: TracedText, numbering: Numbering) -> TracedText:
         numbering.announcing = numbering.alone and bool(rule("references.announced").search(piece.text))
         pieces.append(piece if formal else piece.sub(_PHRASE, numbering.fill))
     return joined(pieces)
-
-
-def _automated(text: str) -> bool:
-    """Whether a report says of a vehicle that it is the automated one, or its own."""
-    return any(m["automated"] for m in _PHRASE.finditer(text))
 
 
 def _companies(text: str) -> list[str]:

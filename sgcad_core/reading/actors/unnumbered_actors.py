@@ -82,7 +82,7 @@ class Phrase:
         if user:
             return _USERS[user.lower()]
         words = self.match.group().lower()
-        return "vehicle" if self.head.endswith(_ANY) and not _is_car(self.head) else kind_of(words, None)[0]
+        return "vehicle" if self.head.endswith(_ANY) and self.head not in _CARS else kind_of(words, None)[0]
 
     @property
     def branded(self) -> bool:
@@ -107,10 +107,6 @@ class Phrase:
         told = [_STATES[m] for m in self.modifiers if _STATES.get(m)]
         closed = rule("references.goes_on").match(self.match.string, self.match.end())
         return f", {told[0]}{',' if closed else ''}" if told else ""
-
-
-def _is_car(head: str) -> bool:
-    return head in _CARS
 
 
 @dataclass

@@ -57,7 +57,7 @@ def _by_turn(v: VehicleFacts, count: int, turns: tuple[Turn, ...]) -> int | None
         return _last(turns, _LEFT) or count
     if v.maneuver in ("turn_right", "lane_change_left", "parked"):
         return _first(turns, _RIGHT) or 1 if v.maneuver == "turn_right" else 1
-    return None if _all_through(turns) else _first(turns, _THROUGH)
+    return None if all(t in _THROUGH for t in turns) else _first(turns, _THROUGH)
 
 
 def _waits_to_turn(v: VehicleFacts) -> bool:
@@ -70,7 +70,3 @@ def _first(turns: tuple[Turn, ...], wanted: tuple[Turn, ...]) -> int | None:
 
 def _last(turns: tuple[Turn, ...], wanted: tuple[Turn, ...]) -> int | None:
     return next((i for i, t in reversed(list(enumerate(turns, 1))) if t in wanted), None)
-
-
-def _all_through(turns: tuple[Turn, ...]) -> bool:
-    return all(t in _THROUGH for t in turns)

@@ -13,7 +13,6 @@ from dataclasses import replace
 from sgcad_core.reading.actors.people_objects import with_people
 from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.contacts.contact_nouns import (
-    NounContact,
     door_of,
     involved,
     is_noun,
@@ -22,6 +21,8 @@ from sgcad_core.reading.contacts.contact_nouns import (
     subject_area,
     together,
     touches,
+    unnamed_pair,
+    with_striker,
 )
 from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.language import rule
@@ -52,9 +53,7 @@ def contact_mentions(told: Iterable[Statement], roster: Roster) -> tuple[Contact
 
 def _only_named(told: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
     """Contacts of a report that says only which vehicles collided."""
-    found = (
-        replace(_from_nouns(pair, t), mutual=True, summary=True) for t in told for pair in involved(plain(t, roster))
-    )
+    found = (replace(b, mutual=True, summary=True) for t in told for b in involved(t, plain(t, roster)))
     return tuple(b for b in found if {b.actor, b.other} <= set(roster.ids) and b.actor != b.other)
 
 
@@ -68,40 +67,11 @@ def _sentence(told: Statement, roster: Roster) -> list[ContactMention]:
         mention = _contact_mention(told, text, m, starts, roster)
         if mention:
             found.append(mention)
-    found += [_from_nouns(t, told) for t in touches(text)]
-    found = [_with_striker(b, text) for b in found] or _unnamed_pair(told, text, roster)
+    found += touches(told, text)
+    found = [with_striker(b, text) for b in found] or unnamed_pair(told, text, roster)
     told_by_verbs = {frozenset((b.actor, b.other)) for b in found}
-    found += [_from_nouns(t, told) for t in together(text) if frozenset((t.first, t.second)) not in told_by_verbs]
+    found += [b for b in together(told, text) if frozenset((b.actor, b.other)) not in told_by_verbs]
     return [b for b in found if b.actor in roster.ids and b.actor != b.other]
-
-
-def _with_striker(mention: ContactMention, text: str) -> ContactMention:
-    """A mutual collision with the striker first, where the sentence names it."""
-    said = rule("contact_nouns.striker").search(text) if mention.mutual or mention.noun else None
-    if not said or said["v"] != mention.other:
-        return mention
-    return replace(
-        mention, actor=mention.other, other=mention.actor, actor_area=mention.other_area, other_area=mention.actor_area
-    )
-
-
-def _unnamed_pair(told: Statement, text: str, roster: Roster) -> list[ContactMention]:
-    """ "Front met front.", where there are but two."""
-    pair = rule("contact_nouns.bare_pair").search(text) if len(roster.ids) == 2 and not MENTION.search(text) else None
-    if not pair or roster.counted:
-        return []
-    (one, other), mine, theirs = roster.ids, area_of(pair["a1"]), area_of(pair["a2"])
-    return [ContactMention(one, other, mine, theirs, told.number, told.role, words="bare_pair", mutual=True, noun=True)]
-
-
-def _from_nouns(t: NounContact, told: Statement) -> ContactMention:
-    if t.by:
-        return ContactMention(
-            t.second, t.first, t.second_area, t.first_area, told.number, told.role, True, t.words, noun=True
-        )
-    return ContactMention(
-        t.first, t.second, t.first_area, t.second_area, told.number, told.role, words=t.words, noun=True
-    )
 
 
 def _contact_mention(

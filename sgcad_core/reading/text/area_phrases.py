@@ -39,12 +39,9 @@ def plain(told: Statement, roster: Roster) -> str:
     text = rule("zones.opened_door").sub(r"\g<told>the \g<door> of \g<v>", text)
     text = rule("zones.possessive").sub(lambda m: f"the {m['area']} of {m['v']}", text)
     text = rule("zones.bare_possessive").sub(r"the \g<area> of \g<v>", text)
-    text = rule("zones.area_of_the_vehicle").sub(_of_subject(told), text)
+    if told.subject:
+        text = rule("zones.area_of_the_vehicle").sub(rf"\g<area> of {told.subject}", text)
     return rule("zones.its_area").sub(lambda m: _its(m, told, text, roster), text)
-
-
-def _of_subject(told: Statement) -> str:
-    return rf"\g<area> of {told.subject}" if told.subject else r"\g<0>"
 
 
 def _its(match: re.Match[str], told: Statement, text: str, roster: Roster) -> str:
