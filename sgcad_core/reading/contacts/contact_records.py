@@ -50,6 +50,11 @@ class ContactMention:
     summary: bool = False
     """The text says only which two collided, wherever it stands; it gives no order in time."""
 
+    def areas_of(self, vehicle: str) -> tuple[Zone | None, Zone | None]:
+        """The area of one of both vehicles, then that of the other."""
+        own = self.actor_area, self.other_area
+        return own if self.actor == vehicle else own[::-1]
+
     @property
     def source(self) -> Source:
         """Where it was read."""
@@ -63,7 +68,6 @@ def with_areas(mention: ContactMention, retold: Iterable[ContactMention]) -> Con
     for other in retold:
         if {other.actor, other.other} != {mention.actor, mention.other}:
             continue
-        same = other.actor == mention.actor
-        mine, theirs = (other.actor_area, other.other_area) if same else (other.other_area, other.actor_area)
+        mine, theirs = other.areas_of(mention.actor)
         mention = replace(mention, actor_area=mention.actor_area or mine, other_area=mention.other_area or theirs)
     return mention

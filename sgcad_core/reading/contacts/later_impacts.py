@@ -110,7 +110,7 @@ def _again(
             slapped.add(t.number)
             yield _slap(t, first)
     for b in contact_mentions:
-        sides = (b.actor_area, b.other_area) if b.actor == first.actor else (b.other_area, b.actor_area)
+        sides = b.areas_of(first.actor)
         other_sides = sides != (first.actor_area, first.other_area) and None not in sides
         further = b is not first and {b.actor, b.other} == pair and b.role != "interview"
         near = 0 <= b.number - first.number <= 2 and b.number not in slapped

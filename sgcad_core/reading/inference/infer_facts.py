@@ -96,8 +96,7 @@ def _change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[Contact
         ):
             continue
         hit = next((b for b in pairs if v in (b.actor, b.other)), None)
-        own, other = (hit.actor_area, hit.other_area) if hit and hit.actor == v else (
-            (hit.other_area, hit.actor_area) if hit else (None, None))  # fmt: skip
+        own, other = hit.areas_of(v) if hit else (None, None)
         if (
             "right" in (own or "").split("/")
             or "left" in (other or "").split("/")
@@ -157,8 +156,7 @@ def _vehicle_contacts(crash: CrashTold) -> list[ContactMention]:
 
 def _areas_hit(vehicle: str, pairs: list[ContactMention]) -> tuple[Area | None, ...]:
     """Sides of the vehicle that were hit, first contact first; of a corner the end."""
-    zones = (b.actor_area if b.actor == vehicle else b.other_area for b in pairs if vehicle in (b.actor, b.other))
-    return tuple(end_of(z) for z in zones)
+    return tuple(end_of(b.areas_of(vehicle)[0]) for b in pairs if vehicle in (b.actor, b.other))
 
 
 def _exit(motion: VehicleMotion, inferred: CrashInferred, vehicle: str) -> Compass | None:

@@ -199,7 +199,7 @@ def _contact(builder: FactBuilder, at: str, contact: ContactFacts, read: StageRe
 
 def _telling_area(told: Sequence[ContactMention], name: str) -> list[ContactMention]:
     """The tellings of a contact that say where one of both was touched."""
-    return [b for b in told if (b.actor_area if b.actor == name else b.other_area)]
+    return [b for b in told if b.areas_of(name)[0]]
 
 
 def _area(builder: FactBuilder, field: str, area: Area, told: Sequence[ContactMention], open_sides: int) -> Fact:

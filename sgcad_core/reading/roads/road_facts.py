@@ -22,10 +22,9 @@ from sgcad_core.reading.motion.absolute_headings import turned_to_roads
 from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.lanes import LaneFacts
-from sgcad_core.reading.roads.road_details import Curve, curves
+from sgcad_core.reading.roads.road_details import Curve, SpeedLimit, curves, speed_limits
 from sgcad_core.reading.roads.road_mentions import Kind, RoadMention, axis_of, road_mentions
 from sgcad_core.reading.roads.road_merge import MergedRoad, merge_roads
-from sgcad_core.reading.roads.speed_limits import SpeedLimit, speed_limits
 from sgcad_core.reading.roads.work_zones_openings import (
     CLOSED_LANES,
     ClosedLanes,

@@ -7,7 +7,7 @@ are three words, and every number is one. Nothing is weighed here; knows no weig
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from sgcad_core.reading import reading as stages
 from sgcad_core.reading.actors.references import has_actor_numbers
@@ -163,9 +163,7 @@ def _contact_features(crash: CrashTold) -> Iterator[str]:
     yield f"blows={min(len(crash.contact_mentions), 3)}/{min(len(mine), 3)}"
     for mention in mine[:_BLOWS]:
         acts = mention.actor == SUBJECT
-        sides: tuple[Any, Any] = (
-            (mention.actor_area, mention.other_area) if acts else (mention.other_area, mention.actor_area)
-        )
+        sides = mention.areas_of(SUBJECT)
         yield f"blow acts={acts} passive={mention.passive} mutual={mention.mutual} noun={mention.noun}"
         yield f"blow mine={sides[0]}"
         yield f"blow theirs={sides[1]}"
