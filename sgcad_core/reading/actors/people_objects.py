@@ -23,10 +23,10 @@ class WalkDirection(NamedTuple):
     way: Compass | None = None
 
 
-def with_people(told: Iterable[Statement]) -> Iterator[Statement]:
+def with_people(statements: Iterable[Statement]) -> Iterator[Statement]:
     """Sentences with "V1 struck him" as "V1 struck the pedestrian" where a person without a number was named before."""
     last: str | None = None
-    for t in told:
+    for t in statements:
         him = rule("contact_words.him").search(t.text)
         before = t.text[: him.start()] if him else t.text
         named = [m["object"] for m in rule("contact_words.road_user").finditer(before)]
@@ -36,9 +36,9 @@ def with_people(told: Iterable[Statement]) -> Iterator[Statement]:
         yield t
 
 
-def walk_of(word: str, told: Iterable[Statement]) -> WalkDirection:
+def walk_of(word: str, statements: Iterable[Statement]) -> WalkDirection:
     """The first direction of walking that sentences with this word tell."""
-    for t in told:
+    for t in statements:
         if t.role not in ("codes", "factors") and word in t.text:
             walk = _told(t.text[t.text.index(word) :])
             if walk != WalkDirection():

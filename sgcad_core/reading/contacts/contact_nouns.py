@@ -20,7 +20,7 @@ _PUSHES = (("v1", "v2", "a2"), ("v3", "v4", "a4"), ("v5", "v6", "a6"))
 _NOTHING = rule("contact_nouns.nothing")
 
 
-def touches(told: Statement, text: str) -> Iterator[ContactMention]:
+def touches(statement: Statement, text: str) -> Iterator[ContactMention]:
     """Every contact that nouns tell in a sentence, in the order of their certainty."""
     pairs = (
         rule("contact_words.between"),
@@ -32,46 +32,57 @@ def touches(told: Statement, text: str) -> Iterator[ContactMention]:
         if not _NOTHING.search(text[: m.start()]):
             front = "front" if rule("contact_nouns.head_on").match(text[m.end() :]) else None
             yield _mention(
-                told, m["v1"], m["v2"], area_if_told(m["a1"]) or front, area_if_told(m["a2"]) or front, "between"
+                statement, m["v1"], m["v2"], area_if_told(m["a1"]) or front, area_if_told(m["a2"]) or front, "between"
             )
     for m in rule("contact_nouns.between_thing").finditer(text):
         if not _NOTHING.search(text[: m.start()]):
             yield _mention(
-                told, m["v"] or m["v2"], m["object"].lower(), area_if_told(m["area"] or m["area2"]), None, "between"
+                statement,
+                m["v"] or m["v2"],
+                m["object"].lower(),
+                area_if_told(m["area"] or m["area2"]),
+                None,
+                "between",
             )
     for m in rule("contact_words.pushed").finditer(text):
         a, b, area = next((m[v], m[w], m[z]) for v, w, z in _PUSHES if m[v])
-        yield _mention(told, a, b, "front", area_if_told(area) or "back", "pushed")
+        yield _mention(statement, a, b, "front", area_if_told(area) or "back", "pushed")
     for m in rule("contact_nouns.received").finditer(text):
-        yield _mention(told, m["v1"], m["v2"], area_if_told(m["a1"]), area_if_told(m["a2"]), "received", True)
+        yield _mention(statement, m["v1"], m["v2"], area_if_told(m["a1"]), area_if_told(m["a2"]), "received", True)
     for m in rule("contact_nouns.took").finditer(text):
         area = area_if_told(m["a0"]) or area_if_told(m["a1"]) or area_of(m["how"])
-        yield _mention(told, m["v1"], m["v2"], area, area_if_told(m["a2"]), "took", True)
+        yield _mention(statement, m["v1"], m["v2"], area, area_if_told(m["a2"]), "took", True)
 
 
-def together(told: Statement, text: str) -> Iterator[ContactMention]:
+def together(statement: Statement, text: str) -> Iterator[ContactMention]:
     """ "... came together, the front of V1 to the left side of V2": no verb, so only where no verb tells more."""
     for m in rule("contact_nouns.together").finditer(text):
         if not _NOTHING.search(text[: m.start()]):
-            yield _mention(told, m["v1"], m["v2"], area_if_told(m["a1"]), area_if_told(m["a2"]), "together")
+            yield _mention(statement, m["v1"], m["v2"], area_if_told(m["a1"]), area_if_told(m["a2"]), "together")
     for m in rule("contact_nouns.into").finditer(text):
         if not _NOTHING.search(text[: m.start()]):
-            yield _mention(told, m["v1"], m["v2"], "front" if m["how"] else None, area_if_told(m["a2"]), "into")
+            yield _mention(statement, m["v1"], m["v2"], "front" if m["how"] else None, area_if_told(m["a2"]), "into")
 
 
-def involved(told: Statement, text: str) -> Iterator[ContactMention]:
+def involved(statement: Statement, text: str) -> Iterator[ContactMention]:
     """ "V1 was in a collision involving V2": of use only where nothing tells how."""
     for m in rule("contact_nouns.involved").finditer(text):
-        yield _mention(told, m["v1"], m["v2"], None, None, "involved")
+        yield _mention(statement, m["v1"], m["v2"], None, None, "involved")
 
 
 def _mention(
-    told: Statement, first: str, second: str, area: Zone | None, other_area: Zone | None, words: str, by: bool = False
+    statement: Statement,
+    first: str,
+    second: str,
+    area: Zone | None,
+    other_area: Zone | None,
+    words: str,
+    by: bool = False,
 ) -> ContactMention:
     """`by` the second one: the first one was struck."""
     if by:
-        return ContactMention(second, first, other_area, area, told.number, told.role, True, words, noun=True)
-    return ContactMention(first, second, area, other_area, told.number, told.role, words=words, noun=True)
+        return ContactMention(second, first, other_area, area, statement.number, statement.role, True, words, noun=True)
+    return ContactMention(first, second, area, other_area, statement.number, statement.role, words=words, noun=True)
 
 
 def door_of(actor: str, before: str, scope: str) -> str | None:
@@ -136,10 +147,14 @@ def with_striker(mention: ContactMention, text: str) -> ContactMention:
     )
 
 
-def unnamed_pair(told: Statement, text: str, roster: Roster) -> list[ContactMention]:
+def unnamed_pair(statement: Statement, text: str, roster: Roster) -> list[ContactMention]:
     """ "Front met front.", where there are but two."""
     pair = rule("contact_nouns.bare_pair").search(text) if len(roster.ids) == 2 and not MENTION.search(text) else None
     if not pair or roster.counted:
         return []
     (one, other), mine, theirs = roster.ids, area_of(pair["a1"]), area_of(pair["a2"])
-    return [ContactMention(one, other, mine, theirs, told.number, told.role, words="bare_pair", mutual=True, noun=True)]
+    return [
+        ContactMention(
+            one, other, mine, theirs, statement.number, statement.role, words="bare_pair", mutual=True, noun=True
+        )
+    ]

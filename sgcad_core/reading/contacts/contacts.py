@@ -31,12 +31,12 @@ from sgcad_core.reading.text.area_phrases import Zone, area_by, area_if_told, ar
 from sgcad_core.reading.text.sentence_roles import HIT
 
 
-def contact_mentions(told: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
+def contact_mentions(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
     """Every contact told, in order: the crash's own sentences first, other witnesses behind them."""
     crash: list[ContactMention] = []
     retold: list[ContactMention] = []
-    told = tuple(told if roster.counted else with_people(told))
-    for t in told:
+    statements = tuple(statements if roster.counted else with_people(statements))
+    for t in statements:
         if t.role in ("codes", "factors", "police", "health", "formal"):
             continue
         into = (
@@ -48,34 +48,34 @@ def contact_mentions(told: Iterable[Statement], roster: Roster) -> tuple[Contact
     first = min((b.number for b in crash if b.other in roster.ids), default=0)
     early = [b for b in retold if b.number < first and b.other in roster.ids]
     late = [b for b in retold if b not in early]
-    return (*early, *crash, *late) or _only_named(told, roster)
+    return (*early, *crash, *late) or _only_named(statements, roster)
 
 
-def _only_named(told: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
+def _only_named(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
     """Contacts of a report that says only which vehicles collided."""
-    found = (replace(b, mutual=True, summary=True) for t in told for b in involved(t, plain(t, roster)))
+    found = (replace(b, mutual=True, summary=True) for t in statements for b in involved(t, plain(t, roster)))
     return tuple(b for b in found if {b.actor, b.other} <= set(roster.ids) and b.actor != b.other)
 
 
-def _sentence(told: Statement, roster: Roster) -> list[ContactMention]:
-    text = plain(told, roster)
+def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
+    text = plain(statement, roster)
     found: list[ContactMention] = []
-    starts = subject_starts(told._replace(text=text), roster)
+    starts = subject_starts(statement._replace(text=text), roster)
     for m in HIT.finditer(text):
         if any(p.start() < m.start() <= p.end() for p in rule("contact_words.both_parts").finditer(text)):
             continue
-        mention = _contact_mention(told, text, m, starts, roster)
+        mention = _contact_mention(statement, text, m, starts, roster)
         if mention:
             found.append(mention)
-    found += touches(told, text)
-    found = [with_striker(b, text) for b in found] or unnamed_pair(told, text, roster)
+    found += touches(statement, text)
+    found = [with_striker(b, text) for b in found] or unnamed_pair(statement, text, roster)
     told_by_verbs = {frozenset((b.actor, b.other)) for b in found}
-    found += [b for b in together(told, text) if frozenset((b.actor, b.other)) not in told_by_verbs]
+    found += [b for b in together(statement, text) if frozenset((b.actor, b.other)) not in told_by_verbs]
     return [b for b in found if b.actor in roster.ids and b.actor != b.other]
 
 
 def _contact_mention(
-    told: Statement, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], roster: Roster
+    statement: Statement, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], roster: Roster
 ) -> ContactMention | None:
     before, behind = text[: m.start()], text[m.end() :]
     passive = bool(rule("contact_words.passive").search(before)) and not rule("contact.made_contact").match(m.group())
@@ -93,54 +93,58 @@ def _contact_mention(
         else None
     )
     if thing:
-        return _thing_hit(told, thing, scope, m.group())
+        return _thing_hit(statement, thing, scope, m.group())
     if not passive and roster.counted and (moves := rule("contact_words.thing_moves").search(before)):
-        return _hit_by_thing(told, moves, scope, m.group(), roster)
-    subjects = _subjects(told, before, m, starts)
+        return _hit_by_thing(statement, moves, scope, m.group(), roster)
+    subjects = _subjects(statement, before, m, starts)
     if not subjects:
         return None
     if len(subjects) > 1:
-        return _mutual(told, subjects, m.group(), before, scope)
+        return _mutual(statement, subjects, m.group(), before, scope)
     actor, actor_area = subjects[0], subject_area(before, subjects[0])
     if actor not in MENTION.findall(before):
-        actor = _meant_by_pronoun(told, actor, scope, roster)
+        actor = _meant_by_pronoun(statement, actor, scope, roster)
     other = None if passive or not roster.counted else roster.other(actor)
     if other and (part := door_of(actor, before, scope)):
         actor, actor_area = other, area_of(part)
     return (
-        _passive(told, actor, actor_area, scope, m.group(), roster)
+        _passive(statement, actor, actor_area, scope, m.group(), roster)
         if passive
-        else _active(told, actor, actor_area, scope, m.group(), roster)
+        else _active(statement, actor, actor_area, scope, m.group(), roster)
     )
 
 
-def _meant_by_pronoun(told: Statement, actor: str, scope: str, roster: Roster) -> str:
+def _meant_by_pronoun(statement: Statement, actor: str, scope: str, roster: Roster) -> str:
     """Resolves "it" as striker or struck: never the vehicle that the sentence itself names behind the verb."""
     whom = MENTION.search(scope)
-    return (_the_other(told, actor, roster) or actor) if whom and whom.group() == actor else actor
+    return (_the_other(statement, actor, roster) or actor) if whom and whom.group() == actor else actor
 
 
-def _thing_hit(told: Statement, thing: re.Match[str], scope: str, verb: str) -> ContactMention | None:
+def _thing_hit(statement: Statement, thing: re.Match[str], scope: str, verb: str) -> ContactMention | None:
     """ "A tree was struck by the front of V1"."""
     by = rule("contact_words.by").search(scope)
     if not by:
         return None
     area = area_if_told(by["area"])
-    return ContactMention(by["v"], thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
+    return ContactMention(
+        by["v"], thing["object"].lower(), area, None, statement.number, statement.role, False, verb.lower()
+    )
 
 
 def _hit_by_thing(
-    told: Statement, thing: re.Match[str], scope: str, verb: str, roster: Roster
+    statement: Statement, thing: re.Match[str], scope: str, verb: str, roster: Roster
 ) -> ContactMention | None:
     """ "The gate closed and made contact with the front of V1"."""
-    whom, area = _object(told, "", scope, roster)
+    whom, area = _object(statement, "", scope, roster)
     if whom not in roster.ids or whom is None:
         return None
-    return ContactMention(whom, thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
+    return ContactMention(
+        whom, thing["object"].lower(), area, None, statement.number, statement.role, False, verb.lower()
+    )
 
 
 def _subjects(
-    told: Statement, before: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]]
+    statement: Statement, before: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]]
 ) -> tuple[str, ...]:
     """The vehicles that are the subject of this verb."""
     caused = rule("contact_words.caused").search(before)
@@ -152,11 +156,11 @@ def _subjects(
     mentions = MENTION.findall(before)
     if mentions:
         return (mentions[-1],)
-    return (told.subject,) if told.subject else ()
+    return (statement.subject,) if statement.subject else ()
 
 
 def _active(
-    told: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
+    statement: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
 ) -> ContactMention | None:
     pair = paired_areas(scope)
     scope = _clause(rule("contact_words.aside").sub(" ", scope))
@@ -165,7 +169,7 @@ def _active(
         own = None  # "made contact with the left door": its owner is told elsewhere
     area = area_of(own["area"]) if own else area
     rest = scope[: own.start()] + scope[own.end() :] if own else scope
-    other, other_area = _object(told, actor, rest, roster)
+    other, other_area = _object(statement, actor, rest, roster)
     if other is None:
         return None
     if (named := rule("contact.with_area_of").search(scope)) and named["v"] != other and scope[: named.start()].strip():
@@ -176,7 +180,7 @@ def _active(
         area = area or "back"
     if pair and area is None:
         area, other_area = pair
-    mention = ContactMention(actor, other, area, other_area, told.number, told.role, False, verb.lower())
+    mention = ContactMention(actor, other, area, other_area, statement.number, statement.role, False, verb.lower())
     return _area_against_area(mention, scope)
 
 
@@ -196,13 +200,13 @@ def _clause(scope: str) -> str:
     return scope[: end.start()] if end else scope
 
 
-def _object(told: Statement, actor: str, scope: str, roster: Roster) -> tuple[str | None, Zone | None]:
+def _object(statement: Statement, actor: str, scope: str, roster: Roster) -> tuple[str | None, Zone | None]:
     """What was hit, and where."""
     m = rule("contact_words.active_object").match(scope)
     thing = rule("contact_words.object").match(scope)
     if m and not (thing and thing.end() < m.start("v") and thing["object"].lower() != "trailer"):
         area = area_if_told(m["area"]) or _area_behind(scope[m.end() :])
-        return _not_itself(m["v"], actor, roster, told), area
+        return _not_itself(m["v"], actor, roster, statement), area
     if thing and thing["object"].lower() not in ("trailer", "parked"):
         return thing["object"].lower(), None
     if (
@@ -211,9 +215,9 @@ def _object(told: Statement, actor: str, scope: str, roster: Roster) -> tuple[st
         or rule("contact.nothing").match(scope)
     ):
         only = rule("contact_words.the_area").match(scope)
-        return _the_other(told, actor, roster), area_if_told(only["area"]) if only else _area_behind(scope) or _damaged(
-            told, roster
-        )
+        return _the_other(statement, actor, roster), area_if_told(only["area"]) if only else _area_behind(
+            scope
+        ) or _damaged(statement, roster)
     late = MENTION.search(scope)
     if late and late.group() != actor and late.start() < 60:
         named = rule("contact.area_of_vehicle").given(vehicle=late.group()).search(scope)
@@ -222,26 +226,26 @@ def _object(told: Statement, actor: str, scope: str, roster: Roster) -> tuple[st
     return (anything["object"].lower(), None) if anything else (None, None)
 
 
-def _the_other(told: Statement, actor: str, roster: Roster) -> str | None:
+def _the_other(statement: Statement, actor: str, roster: Roster) -> str | None:
     """The vehicle that "it" means: of two the other one, else another of the sentence, else the unnumbered subject."""
     subject = next((v for v in roster.ids[:1] if roster.counted and v != actor), None)
-    named = (v for v in MENTION.findall(told.text) if v != actor and v in roster.ids)
-    earlier = told.earlier if told.earlier != actor else None
+    named = (v for v in MENTION.findall(statement.text) if v != actor and v in roster.ids)
+    earlier = statement.earlier if statement.earlier != actor else None
     return roster.other(actor) or next(named, subject or earlier)
 
 
-def _damaged(told: Statement, roster: Roster) -> Zone | None:
+def _damaged(statement: Statement, roster: Roster) -> Zone | None:
     """ "The left side of V2 was damaged when V1 contacted it": the area that the sentence begins with."""
-    found = rule("contact_words.damaged").match(plain(told, roster))
+    found = rule("contact_words.damaged").match(plain(statement, roster))
     return area_of(found["area"]) if found else None
 
 
-def _not_itself(named: str, actor: str, roster: Roster, told: Statement) -> str | None:
+def _not_itself(named: str, actor: str, roster: Roster, statement: Statement) -> str | None:
     """The named vehicle, or another one where it would strike itself: the other of two, or the subject of the sentence
     before."""
     if named != actor:
         return named
-    return roster.other(actor) if roster.counted else _the_other(told, actor, roster)
+    return roster.other(actor) if roster.counted else _the_other(statement, actor, roster)
 
 
 def _area_behind(text: str) -> Zone | None:
@@ -252,7 +256,7 @@ def _area_behind(text: str) -> Zone | None:
 
 
 def _passive(
-    told: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
+    statement: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
 ) -> ContactMention | None:
     by = rule("contact_words.by").search(scope)
     where = rule("contact_words.on_the").search(scope[: by.start()] if by else scope) or rule(
@@ -271,18 +275,18 @@ def _passive(
         return None
     area, other_area = struck_pair(scope, area, other_area)
     area = area or (_area_behind(scope[by.end() :]) if by and not own else None)
-    other = _not_itself(other, actor, roster, told) or other
-    return ContactMention(other, actor, other_area, area, told.number, told.role, True, verb.lower())
+    other = _not_itself(other, actor, roster, statement) or other
+    return ContactMention(other, actor, other_area, area, statement.number, statement.role, True, verb.lower())
 
 
-def _mutual(told: Statement, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> ContactMention:
+def _mutual(statement: Statement, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> ContactMention:
     """ "V1 and V2 collided front to front"."""
     against = rule("contact_words.against").search(scope)
     if against:
         zones = {against["v1"]: area_if_told(against["a1"]), against["v2"]: area_if_told(against["a2"])}
         first, second = zones.get(subjects[0]), zones.get(subjects[1])
         return ContactMention(
-            subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True
+            subjects[0], subjects[1], first, second, statement.number, statement.role, False, verb.lower(), True
         )
     pair = rule("contact_words.paired").search(scope)
     first, second = (area_if_told(pair["a1"]), area_if_told(pair["a2"])) if pair else (None, None)
@@ -291,4 +295,6 @@ def _mutual(told: Statement, subjects: tuple[str, ...], verb: str, before: str, 
         first = second = area_of(both["area"]) if both else None
     if rule("contact.head_on").search(scope):
         first = second = "front"
-    return ContactMention(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)
+    return ContactMention(
+        subjects[0], subjects[1], first, second, statement.number, statement.role, False, verb.lower(), True
+    )

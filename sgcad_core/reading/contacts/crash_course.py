@@ -60,26 +60,32 @@ class ImpactRead(NamedTuple):
     source: Source
 
 
-def acting_segments(told: Sequence[Statement], roster: Roster) -> list[Segment]:
+def acting_segments(statements: Sequence[Statement], roster: Roster) -> list[Segment]:
     """Segments of all sentences, each with the vehicles that act in it."""
-    return [part for t in told for part in _cut(_of_the_impact(t), roster)]
+    return [part for t in statements for part in _cut(_of_the_impact(t), roster)]
 
 
-def _cut(told: Statement, roster: Roster) -> list[Segment]:
+def _cut(statement: Statement, roster: Roster) -> list[Segment]:
     """One sentence; one that begins "Then rotated" goes on with the last one's subject."""
-    found = _with_own_acts(segments([told], roster), told)
-    goes_on = rule("course_rest.then").match(told.text)
-    if not goes_on or not told.subject:
+    found = _with_own_acts(segments([statement], roster), statement)
+    goes_on = rule("course_rest.then").match(statement.text)
+    if not goes_on or not statement.subject:
         return found
-    end = len(told.text) - sum(len(part.text) for part in found)
-    return [Segment((told.subject,), told.text[goes_on.end() : end].lower(), told.role, told.number), *found]
+    end = len(statement.text) - sum(len(part.text) for part in found)
+    return [
+        Segment((statement.subject,), statement.text[goes_on.end() : end].lower(), statement.role, statement.number),
+        *found,
+    ]
 
 
 def courses_told(
-    told: Sequence[Statement], cut: Sequence[Segment], roster: Roster, coded: Mapping[str, ManeuverCue] | None = None
+    statements: Sequence[Statement],
+    cut: Sequence[Segment],
+    roster: Roster,
+    coded: Mapping[str, ManeuverCue] | None = None,
 ) -> CoursesRead:
     """The course of every vehicle as told. `cut`: `acting_segments`; `coded`: losses of control by the codes."""
-    impact = min((t.number for t in told if t.role == "impact"), default=10_000)
+    impact = min((t.number for t in statements if t.role == "impact"), default=10_000)
     heard = {v: _CourseReader() for v in roster.ids}
     for vehicle, cue in (coded or {}).items():
         heard[vehicle].add("lost_control", True, cue.source)
@@ -93,11 +99,11 @@ def courses_told(
     return CoursesRead(courses, sources)
 
 
-def _of_the_impact(told: Statement) -> Statement:
+def _of_the_impact(statement: Statement) -> Statement:
     """ "The impact caused V1 to rotate" with V1 as subject; "V1 after striking V2 rotated" with V1 alone."""
-    text = rule("course_rest.caused").sub(_caused, told.text)
+    text = rule("course_rest.caused").sub(_caused, statement.text)
     text = rule("course_rest.after_striking").sub(r"\g<who>", text)
-    return told if text == told.text else told._replace(text=text)
+    return statement if text == statement.text else statement._replace(text=text)
 
 
 def _caused(m: re.Match[str]) -> str:
@@ -105,7 +111,7 @@ def _caused(m: re.Match[str]) -> str:
     return f"{m['who']} {'were' if m['who'].startswith('both') else 'was'} {verb}"
 
 
-def _with_own_acts(cut: Sequence[Segment], told: Statement) -> list[Segment]:
+def _with_own_acts(cut: Sequence[Segment], statement: Statement) -> list[Segment]:
     """Segments of one sentence, with an onlooker's own acts given back to it.
 
     "V2 noticed V1 turning into her path and steered right": V2 steered, as it did in "avoided V2 by steering left".
@@ -114,7 +120,9 @@ def _with_own_acts(cut: Sequence[Segment], told: Statement) -> list[Segment]:
     for segment in cut:
         before = found[-1] if found else None
         onlooker = before.subjects if before and rule("course_evasion.perceives").search(before.text) else ()
-        onlooker = onlooker or ((told.subject,) if told.subject and told.subject not in segment.subjects else ())
+        onlooker = onlooker or (
+            (statement.subject,) if statement.subject and statement.subject not in segment.subjects else ()
+        )
         back = rule("course_evasion.back_to_subject").search(segment.text)
         if onlooker and segment.text.startswith("by "):
             found.append(segment._replace(subjects=onlooker))

@@ -25,13 +25,13 @@ GROUND = ("curb", "island", "median", "ditch", "ground")
 
 
 def later_impacts(
-    told: Sequence[Statement], cut: Sequence[Segment], roster: Roster, contact_mentions: Sequence[ContactMention]
+    statements: Sequence[Statement], cut: Sequence[Segment], roster: Roster, contact_mentions: Sequence[ContactMention]
 ) -> tuple[ImpactRead, ...]:
     """Contacts with things and second contacts of the same pair, in the order of the text. `cut`: `acting_segments`."""
     first = next((b for b in contact_mentions if b.other in roster.ids), None)
     start = first.number if first else -1
     things = [read for segment in cut for read in _things(segment, start)]
-    again = list(_again(told, roster, contact_mentions, first)) if first else []
+    again = list(_again(statements, roster, contact_mentions, first)) if first else []
     people = list(_people(roster, contact_mentions, first)) if first else []
     found = sorted([*_once(things), *again, *people], key=lambda read: read.source.number)
     return tuple(found)
@@ -98,13 +98,13 @@ def _people(roster: Roster, contact_mentions: Sequence[ContactMention], first: C
 
 # ------------------------------------------------------------------ the same two again
 def _again(
-    told: Sequence[Statement], roster: Roster, contact_mentions: Sequence[ContactMention], first: ContactMention
+    statements: Sequence[Statement], roster: Roster, contact_mentions: Sequence[ContactMention], first: ContactMention
 ) -> Iterator[ImpactRead]:
     """Second contacts of the pair that touched first."""
     pair = {first.actor, first.other}
-    by_number = {t.number: t for t in told}
+    by_number = {t.number: t for t in statements}
     slapped: set[int] = set()
-    for t in told:
+    for t in statements:
         slap = rule("course_impacts.slap").search(t.text)
         if slap and t.number >= first.number and t.role not in UNREAD and not slapped:
             slapped.add(t.number)
@@ -120,13 +120,13 @@ def _again(
             return
 
 
-def _slap(told: Statement, first: ContactMention) -> ImpactRead:
+def _slap(statement: Statement, first: ContactMention) -> ImpactRead:
     """Both sides, in the order in which they are told, or given to the vehicles by name."""
     sides: list[Area | None] = [None, None]
-    named = rule("course_impacts.side_of").finditer(told.text)
+    named = rule("course_impacts.side_of").finditer(statement.text)
     for m in named:
         who = 0 if m["who"] == first.actor else 1
         sides[who] = "left" if m["hand"].lower() == "left" else "right"
     return ImpactRead(
-        ImpactTold(first.actor, first.other, sides[0], sides[1]), Source(told.number, "", "course_impacts.slap")
+        ImpactTold(first.actor, first.other, sides[0], sides[1]), Source(statement.number, "", "course_impacts.slap")
     )

@@ -59,47 +59,51 @@ class NearCrashFacts:
     """False: two come together, and how they did not touch is not told."""
 
 
-def near_miss(told: Sequence[Statement], cut: Sequence[Segment], roster: Roster, *, of_study: bool) -> NearMiss | None:
+def near_miss(
+    statements: Sequence[Statement], cut: Sequence[Segment], roster: Roster, *, of_study: bool
+) -> NearMiss | None:
     """The near crash of a report that tells no contact; None where it tells none either.
 
     `of_study`: what a study watched is told because two came near each other, whether the text says so or not.
     """
-    missed = near_misses(told, roster)
-    no_crash = of_study or not any(rule("near_events.crash").search(t.text) for t in told)
+    missed = near_misses(statements, roster)
+    no_crash = of_study or not any(rule("near_events.crash").search(t.text) for t in statements)
     if not missed or not no_crash:
-        denied = [t for t in told if rule("near_events.denied").search(t.text)]
-        silent = not any(tells_hit(t) for t in told if t not in denied)
+        denied = [t for t in statements if rule("near_events.denied").search(t.text)]
+        silent = not any(tells_hit(t) for t in statements if t not in denied)
         together = silent and (of_study or (no_crash and denied))
         return NearMiss() if together and len(roster.ids) > 1 else None
     first = missed[0]
     pair = (first.actor, first.other)
-    clearance = next(((m, t) for t in told if t.role in _READ and (m := told_clearance_m(t.text))), None)
+    clearance = next(((m, t) for t in statements if t.role in _READ and (m := told_clearance_m(t.text))), None)
     return NearMiss(
         missed, evaded(cut, first.number, pair, roster.ids[0]), clearance[0] if clearance else None,
         Source(clearance[1].number, "", "near_events.clearance") if clearance else None,
     )  # fmt: skip
 
 
-def near_misses(told: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
+def near_misses(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
     """Contacts that nearly came about, in the order of the text."""
     found: list[ContactMention] = []
-    for t in told:
+    for t in statements:
         if t.role in _READ:
             found += _missed(t, roster)
     return tuple(found)
 
 
-def tells_hit(told: Statement) -> bool:
+def tells_hit(statement: Statement) -> bool:
     """Whether a sentence tells a contact, even where its vehicles cannot be read."""
-    return is_impact(rule("near_events.no_hit").sub(" ", told.text))
+    return is_impact(rule("near_events.no_hit").sub(" ", statement.text))
 
 
-def _missed(told: Statement, roster: Roster) -> tuple[ContactMention, ...]:
-    text = told.text
+def _missed(statement: Statement, roster: Roster) -> tuple[ContactMention, ...]:
+    text = statement.text
     for near in of_role("near_miss"):
         text = near.sub(lambda m, to=near.yields["to"]: m[0] if _could_not(m) else m.expand(to), text)
-    if text != told.text:
-        return contact_mentions([told._replace(text=text, role="impact" if is_impact(text) else told.role)], roster)
+    if text != statement.text:
+        return contact_mentions(
+            [statement._replace(text=text, role="impact" if is_impact(text) else statement.role)], roster
+        )
     return ()
 
 

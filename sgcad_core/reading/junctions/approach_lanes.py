@@ -101,11 +101,11 @@ class Approaches:
         return sides[0] if len(sides) == 1 and len(self.legs) == 3 else None
 
 
-def approaches_of(told: Iterable[Statement]) -> Approaches:
+def approaches_of(statements: Iterable[Statement]) -> Approaches:
     """What the text lists of its approaches; nothing where it lists none."""
-    told = [*told]
-    reader = _Reader(road_names([t.text for t in told]))
-    for t in told:
+    statements = [*statements]
+    reader = _Reader(road_names([t.text for t in statements]))
+    for t in statements:
         if t.role not in _NO_CLAUSE:
             reader.sentence(t.text, t.number)
     return reader.result()

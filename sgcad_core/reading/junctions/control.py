@@ -38,9 +38,9 @@ _ANYWHERE = ("all_way_stop", "yield")
 """Told of no works zone and no police car."""
 
 
-def control_of(told: Sequence[Statement]) -> tuple[Control, Source | None]:
+def control_of(statements: Sequence[Statement]) -> tuple[Control, Source | None]:
     """Signal, stop, yield or flashing, and where it is told: the crash's sentences first, then what drivers said."""
-    said = [t for t in told if t.role not in ("codes", "factors")]
+    said = [t for t in statements if t.role not in ("codes", "factors")]
     for story in (True, False):
         found = _first_control([t for t in said if (t.role in STORY_ROLES) == story])
         if found:
@@ -78,12 +78,12 @@ _NEAR = 40
 
 
 def signed_legs(
-    told: Sequence[Statement], vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad], four_leg: bool
+    statements: Sequence[Statement], vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad], four_leg: bool
 ) -> tuple[Compass, ...]:
     """Bearings of the legs under a stop or yield sign: one axis, both its ends where the road crosses."""
-    names = street_names(told, {v.id: v.heading for v in vehicles if v.heading})
+    names = street_names(statements, {v.id: v.heading for v in vehicles if v.heading})
     votes: Counter[Compass] = Counter()
-    for t in told:
+    for t in statements:
         if t.role not in ("codes", "factors"):
             weight = 6 if t.role in CRASH_ROLES else 2
             for legs in _signed(t, vehicles, roads, names):
@@ -99,14 +99,14 @@ def signed_legs(
 
 
 def _signed(
-    told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad], names: StreetNames
+    statement: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad], names: StreetNames
 ) -> Iterator[list[Compass]]:
-    text = _NOT_CONTROL.sub(" ", told.text)
+    text = _NOT_CONTROL.sub(" ", statement.text)
     last = 0
     for sign in rule("control.sign").finditer(text):
         before, behind = text[last : sign.start()], text[sign.end() :]
         axis = _street_of_sign(before, sign.group() + behind, sign.end() - sign.start(), names)
-        yield [axis, turned(axis, 180)] if axis else _legs_of_sign(before, behind, told, vehicles, roads)
+        yield [axis, turned(axis, 180)] if axis else _legs_of_sign(before, behind, statement, vehicles, roads)
         last = sign.end()
 
 
@@ -124,23 +124,23 @@ def _street_of_sign(before: str, behind: str, sign: int, names: StreetNames) -> 
 
 
 def _legs_of_sign(
-    before: str, behind: str, told: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad]
+    before: str, behind: str, statement: Statement, vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad]
 ) -> list[Compass]:
     """ "stop sign for northbound traffic", "on the side street", else the vehicle or road named last."""
     whom = rule("control.for").match(behind)
     if whom:
         return _legs_of_words(whom[0])
     if rule("control.on_side_road").match(behind):
-        across = [] if _SIDE_ROAD.search(before) else _crossing_legs(before, told, vehicles)
+        across = [] if _SIDE_ROAD.search(before) else _crossing_legs(before, statement, vehicles)
         return across or _side_legs(roads)
     clause = rule("control.contrast").split(before)[-1]
     owner = [m for v in vehicles for m in rule("common.named_vehicle").given(vehicle=v.id).finditer(clause)]
     subjects = list(rule("control.subject").finditer(clause))
-    if subjects and told.role != "opening" and (not owner or _only_direction(clause, subjects[-1])):
+    if subjects and statement.role != "opening" and (not owner or _only_direction(clause, subjects[-1])):
         return _legs_of_words(subjects[-1]["whom"])
     if _SIDE_ROAD.search(clause):
         return _side_legs(roads)
-    named = owner[-1].group() if owner else told.subject
+    named = owner[-1].group() if owner else statement.subject
     return [turned(v.heading, 180) for v in vehicles if v.id == named and v.heading]
 
 
@@ -150,10 +150,10 @@ def _side_legs(roads: Sequence[MergedRoad]) -> list[Compass]:
     return [leg for axis in cross[:1] for leg in (axis, turned(axis, 180))]
 
 
-def _crossing_legs(before: str, told: Statement, vehicles: Sequence[VehicleFacts]) -> list[Compass]:
+def _crossing_legs(before: str, statement: Statement, vehicles: Sequence[VehicleFacts]) -> list[Compass]:
     """Legs of vehicles that cross the path of the named vehicle: the side street is not its own."""
     named = [v.id for v in vehicles if rule("common.named_vehicle").given(vehicle=v.id).search(before)]
-    whose = named or [told.subject or ""]
+    whose = named or [statement.subject or ""]
     own = {axis_of(v.heading) for v in vehicles if v.heading and v.id in whose}
     return [turned(v.heading, 180) for v in vehicles if v.heading and own and axis_of(v.heading) not in own]
 

@@ -64,28 +64,28 @@ CIRCLE_LANES = rule("junction.roundabout_lanes")
 
 
 def junction_of(
-    told: Sequence[Statement],
+    statements: Sequence[Statement],
     vehicles: Sequence[VehicleFacts],
     roads: Sequence[MergedRoad],
     approaches: Approaches | None = None,
 ) -> JunctionFacts:
     """The junction that the story tells or that the vehicles' paths need; kind "none" on a plain road."""
     listed = approaches or Approaches()
-    story = [t for t in told if t.role in STORY_ROLES]
-    heard = [t for t in told if t.role in STORY_ROLES or t.role == "interview"]
+    story = [t for t in statements if t.role in STORY_ROLES]
+    heard = [t for t in statements if t.role in STORY_ROLES or t.role == "interview"]
     if _named(story)[0] == "none" and (_named(heard)[0] != "none" or _one_sided(heard, roads)):
         story = heard
-    kind, stated = _kind(story, told, vehicles, roads)
+    kind, stated = _kind(story, statements, vehicles, roads)
     kind = _kind_listed(kind, stated, listed)
     if kind == "none":
         return JunctionFacts(stated=stated)
-    control, control_at = control_of(told)
+    control, control_at = control_of(statements)
     record = junction_kind(kind)
     if record.legs == 2:
         return JunctionFacts(kind, stated=stated, where=_where(kind=_named(story)[1]))
     where = _where(kind=_named(story)[1] if record.rule else None, control=control_at)
     signed = control in ("stop", "yield", "flashing")
-    halted = signed_legs(told, vehicles, roads, record.crossing) if signed else ()
+    halted = signed_legs(statements, vehicles, roads, record.crossing) if signed else ()
     if record.crossing:
         around = _circle_lanes(story) if record.round else None
         offset = any(_OFFSET.search(t.text) for t in story)
@@ -108,7 +108,10 @@ def _where(**cues: Source | None) -> dict[str, Source]:
 
 # ------------------------------------------------------------------ kind
 def _kind(
-    story: Sequence[Statement], told: Sequence[Statement], vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad]
+    story: Sequence[Statement],
+    statements: Sequence[Statement],
+    vehicles: Sequence[VehicleFacts],
+    roads: Sequence[MergedRoad],
 ) -> tuple[JunctionKind, bool]:
     named = _named(story)[0]
     access = any(v.origin in DRIVES or v.target in DRIVES for v in vehicles)

@@ -123,9 +123,9 @@ def stem_told(
     return None
 
 
-def _bearing(word: str, told: Statement, vehicles: Sequence[VehicleFacts], lead: Compass | None) -> Compass | None:
+def _bearing(word: str, statement: Statement, vehicles: Sequence[VehicleFacts], lead: Compass | None) -> Compass | None:
     """A compass point as it stands; left and right as the sentence's vehicle (or the first) heads."""
     if word.lower() not in ("left", "right"):
         return compass_of(word)
-    own = next((v.heading for v in vehicles if v.id == told.subject and v.heading), lead)
+    own = next((v.heading for v in vehicles if v.id == statement.subject and v.heading), lead)
     return turned(own, -90 if word.lower() == "left" else 90) if own else None

@@ -109,23 +109,25 @@ def _main_subject(text: str, current: str | None, role: Role, roster: Roster) ->
     return first.group() if early or current is None else current
 
 
-def segments(told: Iterable[Statement], roster: Roster) -> tuple[Segment, ...]:
+def segments(statements: Iterable[Statement], roster: Roster) -> tuple[Segment, ...]:
     """Every stretch of text with its subjects, in order; text before the first subject is left out."""
     found: list[Segment] = []
-    for t in told:
+    for t in statements:
         found += _cut(t, roster)
     return tuple(found)
 
 
-def _cut(told: Statement, roster: Roster) -> list[Segment]:
-    starts = subject_starts(told, roster)
-    ends = [at for at, _, _ in starts[1:]] + [len(told.text)][: len(starts)]
+def _cut(statement: Statement, roster: Roster) -> list[Segment]:
+    starts = subject_starts(statement, roster)
+    ends = [at for at, _, _ in starts[1:]] + [len(statement.text)][: len(starts)]
     found = [
-        Segment(subjects, _own(told.text[begin:end].lower().strip(" ,"), n), told.role, told.number, begin)
+        Segment(
+            subjects, _own(statement.text[begin:end].lower().strip(" ,"), n), statement.role, statement.number, begin
+        )
         for n, ((_, begin, subjects), end) in enumerate(zip(starts, ends, strict=True))
         if subjects
     ]
-    return [*_opening(told, starts), *found, *(also for one in found for also in _alike(one, roster))]
+    return [*_opening(statement, starts), *found, *(also for one in found for also in _alike(one, roster))]
 
 
 def _alike(segment: Segment, roster: Roster) -> Iterator[Segment]:
@@ -141,24 +143,26 @@ def _own(text: str, before: int) -> str:
     return text[: aside.end()] if aside else text
 
 
-def _opening(told: Statement, starts: list[tuple[int, int, tuple[str, ...]]]) -> list[Segment]:
+def _opening(statement: Statement, starts: list[tuple[int, int, tuple[str, ...]]]) -> list[Segment]:
     """What a participle tells of the subject that follows it: "While turning right, V1 was struck"."""
-    before = told.text[: starts[0][0]] if starts else ""
+    before = statement.text[: starts[0][0]] if starts else ""
     if not before or not starts[0][2] or MENTION.search(before) or not rule("clauses.opening").fullmatch(before):
         return []
-    return [Segment(starts[0][2], before.lower().strip(" ,"), told.role, told.number, 0)]
+    return [Segment(starts[0][2], before.lower().strip(" ,"), statement.role, statement.number, 0)]
 
 
-def subject_starts(told: Statement, roster: Roster) -> list[tuple[int, int, tuple[str, ...]]]:
+def subject_starts(statement: Statement, roster: Roster) -> list[tuple[int, int, tuple[str, ...]]]:
     """(place of the mention, begin of its text, vehicles) of each subject."""
-    text = told.text
+    text = statement.text
     starts: list[tuple[int, int, tuple[str, ...]]] = []
     pronoun = _PRONOUN.match(text)
-    if pronoun and told.subject:
-        everyone = len(roster.ids) == 2 and rule("clauses.they").search(pronoun.group()) and _means_all(told, pronoun)
-        starts.append((0, pronoun.end(), roster.ids if everyone else (told.subject,)))
-    elif told.subject and not MENTION.search(text) and rule("clauses.headless").match(text):
-        starts.append((0, 0, (told.subject,)))
+    if pronoun and statement.subject:
+        everyone = (
+            len(roster.ids) == 2 and rule("clauses.they").search(pronoun.group()) and _means_all(statement, pronoun)
+        )
+        starts.append((0, pronoun.end(), roster.ids if everyone else (statement.subject,)))
+    elif statement.subject and not MENTION.search(text) and rule("clauses.headless").match(text):
+        starts.append((0, 0, (statement.subject,)))
     inside = 0
     for m in _subjects(text):
         if m.start() < inside:
@@ -201,8 +205,8 @@ def _subjects(text: str) -> Iterator[re.Match[str]]:
         yield (_SUBJECT.match(text, named[-1].start()) or m) if again else m
 
 
-def _means_all(told: Statement, pronoun: re.Match[str]) -> bool:
-    return told.several or bool(rule("clauses.both_behind").match(told.text[pronoun.end() :]))
+def _means_all(statement: Statement, pronoun: re.Match[str]) -> bool:
+    return statement.several or bool(rule("clauses.both_behind").match(statement.text[pronoun.end() :]))
 
 
 def _whom(match: re.Match[str], roster: Roster) -> tuple[str, ...]:

@@ -30,15 +30,15 @@ _UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint"
 
 
 def read_motions(
-    told: Sequence[Statement], cut: Iterable[Segment], roster: Roster, struck_at: int | None = None
+    statements: Sequence[Statement], cut: Iterable[Segment], roster: Roster, struck_at: int | None = None
 ) -> dict[str, VehicleMotion]:
     """Motion of every vehicle of the roster; `struck_at`: the sentence of the contact, where that is known."""
     found = {v: VehicleMotion(watched=v == roster.ids[0], ordered=roster.counted) for v in roster.ids}
     for identity in roster.vehicles if roster.counted else ():
         _read_part(found[identity.id], identity, roster)
-    impact = min((t.number for t in told if t.role == "impact"), default=len(told))
+    impact = min((t.number for t in statements if t.role == "impact"), default=len(statements))
     impact = struck_at if roster.counted and struck_at is not None else impact
-    contact_sentence = next((t for t in told if t.number == impact), None) if roster.counted else None
+    contact_sentence = next((t for t in statements if t.number == impact), None) if roster.counted else None
     for segment in cut:
         if segment.role in _UNREAD or (contact_sentence and _behind(contact_sentence, segment)):
             continue
@@ -50,7 +50,7 @@ def read_motions(
             if late and roster.counted:
                 continue
             _read(motion, segment, vehicle, roster, 2 if late else 4, after)
-    for t in told:
+    for t in statements:
         for motion in found.values():
             motion.at = t.number
         if t.role not in _UNREAD:
@@ -58,7 +58,7 @@ def read_motions(
         if t.role in ("codes", "factors"):
             read_critical_event(found, t, roster)
     if not roster.counted:
-        read_speeds_beside(found, [t for t in told if t.role not in _UNREAD])
+        read_speeds_beside(found, [t for t in statements if t.role not in _UNREAD])
     for motion in found.values():
         _hear_interview(motion)
     return found
@@ -132,21 +132,21 @@ def _until_rest(text: str) -> str:
     return text[: cut.start()] if cut else text
 
 
-def read_critical_event(found: dict[str, VehicleMotion], told: Statement, roster: Roster) -> None:
-    text = told.text.lower()
+def read_critical_event(found: dict[str, VehicleMotion], statement: Statement, roster: Roster) -> None:
+    text = statement.text.lower()
     if not rule("critical_events.event").search(text):
         return
-    named = [v for v in MENTION.findall(told.text) if v in roster.ids]
-    owner = named[0] if named else told.subject
+    named = [v for v in MENTION.findall(statement.text) if v in roster.ids]
+    owner = named[0] if named else statement.subject
     if owner not in found or rule("critical_events.uncoded").match(text):
         return
     if rule("critical_events.other_vehicle").search(text):
-        _other_code(found, owner, text, told.number, roster)
+        _other_code(found, owner, text, statement.number, roster)
     else:
         for event in of_role("own_event"):
             if code := event.search(text):
                 found[owner].cues.append(
-                    ManeuverCue(f"code:{event.yields['deed']}", 2, told.number, code.group(), event.id)
+                    ManeuverCue(f"code:{event.yields['deed']}", 2, statement.number, code.group(), event.id)
                 )
 
 

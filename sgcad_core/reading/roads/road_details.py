@@ -34,56 +34,58 @@ _CURVE = rule("road_details.curve")
 _BARE_CURVE = rule("road_details.bare_curve")
 
 
-def curves(told: Sequence[Statement], headings: Mapping[str, Compass]) -> tuple[Curve, ...]:
+def curves(statements: Sequence[Statement], headings: Mapping[str, Compass]) -> tuple[Curve, ...]:
     """Curves in order; one without a told side is taken to the left of the first vehicle."""
-    story = [t for t in told if t.role in STORY_ROLES]
+    story = [t for t in statements if t.role in STORY_ROLES]
     found = tuple(c for t in story for c in _curves(t, headings))
     bare = [Source(t.number, m[0], _BARE_CURVE.id) for t in story if (m := _BARE_CURVE.search(t.text))]
     return found or tuple(Curve("left", None, source) for source in bare[:1])
 
 
-def _curves(told: Statement, headings: Mapping[str, Compass]) -> Iterator[Curve]:
-    if by_way := list(_curves_by_way(told)):
+def _curves(statement: Statement, headings: Mapping[str, Compass]) -> Iterator[Curve]:
+    if by_way := list(_curves_by_way(statement)):
         yield from by_way
         return
-    for m in _CURVE.finditer(told.text):
+    for m in _CURVE.finditer(statement.text):
         side = next(filter(None, m.groups())).lower()
-        if rule("road_details.nearby").search(told.text[: m.start()]):
+        if rule("road_details.nearby").search(statement.text[: m.start()]):
             continue
-        source = Source(told.number, m[0], _CURVE.id)
-        yield Curve("left" if side == "left" else "right", _driven(told, m.start(), m.end(), headings), source)
+        source = Source(statement.number, m[0], _CURVE.id)
+        yield Curve("left" if side == "left" else "right", _driven(statement, m.start(), m.end(), headings), source)
 
 
-def _curves_by_way(told: Statement) -> Iterator[Curve]:
+def _curves_by_way(statement: Statement) -> Iterator[Curve]:
     """The sides that a curve has for directions of travel that are named with them."""
-    if not rule("road_details.curve_word").search(told.text):
+    if not rule("road_details.curve_word").search(statement.text):
         return
     coming = rule("road_details.curve_from")
-    ways = [(m, m["hand"] or m["hand2"], compass_of(m["from"] or m["from2"])) for m in coming.finditer(told.text)]
+    ways = [(m, m["hand"] or m["hand2"], compass_of(m["from"] or m["from2"])) for m in coming.finditer(statement.text)]
     for m, hand, way in ways:
         if way:
             side: Literal["left", "right"] = "left" if hand.lower() == "left" else "right"
-            yield Curve(side, turned(way, 180), Source(told.number, m[0], coming.id))
+            yield Curve(side, turned(way, 180), Source(statement.number, m[0], coming.id))
     if ways:
         return
     for by in (rule("road_details.curve_for"), rule("road_details.curve_as")):
-        found = [(m, way) for m in by.finditer(told.text) if (way := compass_of(m["way"]))]
+        found = [(m, way) for m in by.finditer(statement.text) if (way := compass_of(m["way"]))]
         for m, way in found:
-            yield Curve("left" if m["hand"].lower() == "left" else "right", way, Source(told.number, m[0], by.id))
+            yield Curve("left" if m["hand"].lower() == "left" else "right", way, Source(statement.number, m[0], by.id))
         if found:
             return
 
 
-def _driven(told: Statement, start: int, end: int, headings: Mapping[str, Compass]) -> Compass | None:
+def _driven(statement: Statement, start: int, end: int, headings: Mapping[str, Compass]) -> Compass | None:
     """The direction of travel in which the curve has that side."""
-    before = [v for v in rule("common.vehicle").findall(told.text[:start]) if v in headings]
-    behind = rule("road_details.for_vehicle").match(told.text[end:])
+    before = [v for v in rule("common.vehicle").findall(statement.text[:start]) if v in headings]
+    behind = rule("road_details.for_vehicle").match(statement.text[end:])
     if behind and behind[1] in headings:
         return headings[behind[1]]
     if before:
         return headings[before[-1]]
     way = [
-        compass_of(m[1]) for m in rule("road_details.way").finditer(told.text[:start]) if m[1].lower().endswith("bound")
+        compass_of(m[1])
+        for m in rule("road_details.way").finditer(statement.text[:start])
+        if m[1].lower().endswith("bound")
     ]
     return way[-1] if way else None
 
@@ -106,22 +108,22 @@ _ADVISED = rule("road_details.advised")
 _SIDE_WORD = rule("road_details.side_word")
 
 
-def speed_limits(told: Iterable[Statement], headings: Mapping[str, Compass]) -> tuple[SpeedLimit, ...]:
+def speed_limits(statements: Iterable[Statement], headings: Mapping[str, Compass]) -> tuple[SpeedLimit, ...]:
     """Every posted limit in order, mph (a limit in km/h only is converted to the nearest 5 mph)."""
-    story = [t for t in told if t.role in STORY_ROLES]
+    story = [t for t in statements if t.role in STORY_ROLES]
     names = street_names(story, headings)
     return tuple(limit for t in story for limit in _limits(t, headings, names))
 
 
-def _limits(told: Statement, headings: Mapping[str, Compass], names: StreetNames) -> Iterator[SpeedLimit]:
-    text = told.text
+def _limits(statement: Statement, headings: Mapping[str, Compass], names: StreetNames) -> Iterator[SpeedLimit]:
+    text = statement.text
     stated = _stated(text, names)
     for index, value in enumerate(stated):
         before = text[stated[index - 1].end if index else 0 : value.start]
         behind = text[value.end : stated[index + 1].start if index + 1 < len(stated) else len(text)]
         if LOWEST_MPH <= value.mph <= HIGHEST_MPH:
             axis, cross = _whose(before, behind, headings, names)
-            yield SpeedLimit(value.mph, axis, cross, Source(told.number, value.words, value.rule))
+            yield SpeedLimit(value.mph, axis, cross, Source(statement.number, value.words, value.rule))
 
 
 # ------------------------------------------------------------------ values

@@ -103,41 +103,41 @@ class RoadFacts:
         return tuple(r for r in self.roads if r.kind not in JOINING)
 
 
-def roads_of(told: tuple[Statement, ...], roster: Roster, crash: CrashFacts) -> RoadFacts:
+def roads_of(statements: tuple[Statement, ...], roster: Roster, crash: CrashFacts) -> RoadFacts:
     """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
-    mentions, crash = _alleys(road_mentions(_telling(told), roster.ids), crash)
-    crash = turned_to_roads(crash, mentions, told)
+    mentions, crash = _alleys(road_mentions(_telling(statements), roster.ids), crash)
+    crash = turned_to_roads(crash, mentions, statements)
     driven = tuple(v for v in crash.vehicles if v.kind != "pedestrian") or crash.vehicles
     headings = {v.id: v.heading for v in driven if v.heading}
-    limits, bends = speed_limits(told, headings), curves(told, headings)
+    limits, bends = speed_limits(statements, headings), curves(statements, headings)
     gathered = merge_roads(mentions, headings) or [MergedRoad(None) for _ in limits[:1]]
-    approaches = approaches_of(told)
-    junction = junction_of(told, driven, gathered, approaches)
-    rural = _rural(told)
+    approaches = approaches_of(statements)
+    junction = junction_of(statements, driven, gathered, approaches)
+    rural = _rural(statements)
     roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)
     roads = _placed(tuple(_center_lane_elsewhere(r, roads) for r in roads), approaches)
-    merge_lane = any(_MERGE_LANE.search(t.text) for t in told)
-    story = [t.text for t in told if t.role in STORY_ROLES]
+    merge_lane = any(_MERGE_LANE.search(t.text) for t in statements)
+    story = [t.text for t in statements if t.role in STORY_ROLES]
     beside = tuple(rule.yields["beside"] for rule in of_role("beside") if any(map(rule.search, story)))
     walked = any(map(_CROSSWALK.search, story)) or (junction.kind != "none" and _somebody_walks(crash))
     urban = any(map(_URBAN.search, story))
     notes = _open_ends(roads, junction, crash)
-    in_gore = in_gores(told)
+    in_gore = in_gores(statements)
     exits = any(map(_EXIT_RAMP.search, story)) or bool(in_gore)
     leaves = exits and not any(map(_ENTRANCE_RAMP.search, story))
-    told_closed = closed_lanes(told, driven)
+    told_closed = closed_lanes(statements, driven)
     closed = told_closed if told_closed and _closable(told_closed, junction, roads) else None
-    opens = median_opening(told)
+    opens = median_opening(statements)
     opening = opens if junction.kind == "none" and not closed else None
     gore = in_gore if junction.kind == RAMP else {}
     crash = replace(crash, gore=gore)
     places = {
-        WORK_ZONE: (names_closure(told), closed),
+        WORK_ZONE: (names_closure(statements), closed),
         MEDIAN_OPENING: (opens, opening),
-        GORE: (names_gore(told), gore),
+        GORE: (names_gore(statements), gore),
     }
     roads = tuple(uncounted(r) if r.axis and _listed(approaches, junction, r.axis) else r for r in roads)
-    junction = replace(junction, unsupported=_undrawn(unsupported_places(told), places))
+    junction = replace(junction, unsupported=_undrawn(unsupported_places(statements), places))
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")
     told_places = (merge_lane, beside, walked, urban, closed, opening, leaves)
@@ -180,9 +180,9 @@ def _somebody_walks(crash: CrashFacts) -> bool:
     return any(other.kind == "pedestrian" for other in crash.others)
 
 
-def _rural(told: tuple[Statement, ...]) -> Source | None:
+def _rural(statements: tuple[Statement, ...]) -> Source | None:
     """Where the text says that the crash was in the country."""
-    story = (t for t in told if t.role in CRASH_ROLES)
+    story = (t for t in statements if t.role in CRASH_ROLES)
     return next((Source(t.number, m[0], _RURAL.id) for t in story if (m := _RURAL.search(t.text))), None)
 
 
@@ -232,15 +232,15 @@ _CROSSWALK = rule("roads.crosswalk")
 _EXIT_RAMP, _ENTRANCE_RAMP = rule("roads.exit_ramp"), rule("roads.entrance_ramp")
 
 
-def _telling(told: tuple[Statement, ...]) -> list[Statement]:
+def _telling(statements: tuple[Statement, ...]) -> list[Statement]:
     """Sentences that may describe roads: the story, then restraint and other sentences that also name lanes."""
-    story = [_without_circle(t) for t in told if t.role in STORY_ROLES]
-    return story + [t for t in told if t.role in ("restraint", "towing", "injury") and "lane" in t.text]
+    story = [_without_circle(t) for t in statements if t.role in STORY_ROLES]
+    return story + [t for t in statements if t.role in ("restraint", "towing", "injury") and "lane" in t.text]
 
 
-def _without_circle(told: Statement) -> Statement:
+def _without_circle(statement: Statement) -> Statement:
     """The sentence without the lanes of a roundabout, which are those of no road, and without closed ones."""
-    return told._replace(text=CLOSED_LANES.sub("some were closed", CIRCLE_LANES.sub(ROUNDABOUT, told.text)))
+    return statement._replace(text=CLOSED_LANES.sub("some were closed", CIRCLE_LANES.sub(ROUNDABOUT, statement.text)))
 
 
 def _road(

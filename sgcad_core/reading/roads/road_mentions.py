@@ -62,23 +62,23 @@ _PAIR = rule("mentions.pair")
 _VEHICLE = rule("mentions.vehicle")
 
 
-def road_mentions(told: Iterable[Statement], ids: tuple[str, ...]) -> tuple[RoadMention, ...]:
+def road_mentions(statements: Iterable[Statement], ids: tuple[str, ...]) -> tuple[RoadMention, ...]:
     """Mentions in order of the text. `ids`: all vehicles, for "both vehicles"."""
-    return tuple(mention for sentence in told for mention in _sentence(sentence, ids))
+    return tuple(mention for sentence in statements for mention in _sentence(sentence, ids))
 
 
-def _sentence(told: Statement, ids: tuple[str, ...]) -> Iterator[RoadMention]:
-    text = told.text
+def _sentence(statement: Statement, ids: tuple[str, ...]) -> Iterator[RoadMention]:
+    text = statement.text
     spans = list(noun_phrases(text))
     if not spans:
-        facts = with_sources(lane_facts(text), told.number, text)
+        facts = with_sources(lane_facts(text), statement.number, text)
         if not facts.empty:
-            yield from _by_axis(_bare(told, facts))
+            yield from _by_axis(_bare(statement, facts))
         return
     for index, (start, head_start, end) in enumerate(spans):
         stop = spans[index + 1][0] if index + 1 < len(spans) else len(text)
         lead = text[spans[index - 1][2] if index else 0 : start]
-        yield _mention(told, (lead, text[start:end], text[end:stop]), text[head_start:end], (index == 0, ids))
+        yield _mention(statement, (lead, text[start:end], text[end:stop]), text[head_start:end], (index == 0, ids))
 
 
 def _by_axis(mention: RoadMention) -> Iterator[RoadMention]:
@@ -102,10 +102,12 @@ def _compass(word: str) -> Compass:
     return next(c for c in COMPASS if c == word)
 
 
-def _bare(told: Statement, facts: LaneFacts) -> RoadMention:
-    axis = _axis_of_lanes(facts) or axis_in(told.text)
-    who = tuple(dict.fromkeys(_VEHICLE.findall(told.text)))[:1]
-    return RoadMention(told.text, "road", axis, None, None, True, who, "on" if who else None, facts, told.number)
+def _bare(statement: Statement, facts: LaneFacts) -> RoadMention:
+    axis = _axis_of_lanes(facts) or axis_in(statement.text)
+    who = tuple(dict.fromkeys(_VEHICLE.findall(statement.text)))[:1]
+    return RoadMention(
+        statement.text, "road", axis, None, None, True, who, "on" if who else None, facts, statement.number
+    )
 
 
 def _axis_of_lanes(facts: LaneFacts) -> Compass | None:
@@ -114,12 +116,12 @@ def _axis_of_lanes(facts: LaneFacts) -> Compass | None:
 
 
 def _mention(
-    told: Statement, parts: tuple[str, str, str], head: str, place: tuple[bool, tuple[str, ...]]
+    statement: Statement, parts: tuple[str, str, str], head: str, place: tuple[bool, tuple[str, ...]]
 ) -> RoadMention:
     lead, phrase, behind = parts
     first, ids = place
     said = (_lead_tail(lead) if first else "") + phrase + behind
-    facts = with_sources(lane_facts(said), told.number, said)
+    facts = with_sources(lane_facts(said), statement.number, said)
     vehicles, how = _drivers(lead, behind, ids)
     toward = _toward(phrase)
     axis = axis_in(phrase) or (axis_of(toward) if toward else None) or _running(behind) or _lane_direction(lead)
@@ -128,7 +130,7 @@ def _mention(
     return RoadMention(
         said, _kind(phrase, head, lead), axis or _axis_of_lanes(facts), toward, _relation(phrase, lead),
         bool(rule("mentions.definite").match(phrase)),
-        vehicles, how, facts, told.number,
+        vehicles, how, facts, statement.number,
     )  # fmt: skip
 
 

@@ -48,9 +48,9 @@ class StreetNames(NamedTuple):
         return self.axes.get(first.name) if first else None
 
 
-def street_names(told: Iterable[Statement], headings: Mapping[str, Compass]) -> StreetNames:
+def street_names(statements: Iterable[Statement], headings: Mapping[str, Compass]) -> StreetNames:
     """The named streets, each with the axis that most of what is said of it gives."""
-    story = [t.text for t in told if t.role in STORY_ROLES]
+    story = [t.text for t in statements if t.role in STORY_ROLES]
     names = {m["name"].lower() for text in story for known in _KNOWN for m in known.finditer(text)}
     if not names:
         return StreetNames({}, None)

@@ -42,14 +42,14 @@ _AWAY: dict[str, Side] = {"lane_change_left": "right", "lane_change_right": "lef
 """The side of the lane that one leaves by a change of lane."""
 
 
-def closed_lanes(told: Sequence[Statement], vehicles: Sequence[VehicleFacts]) -> ClosedLanes | None:
+def closed_lanes(statements: Sequence[Statement], vehicles: Sequence[VehicleFacts]) -> ClosedLanes | None:
     """The closed lanes of a story, None where it tells none. Without a told side it is that of the vehicle that leaves
     the lane, else the right one."""
     leaves = next((v for v in vehicles if v.maneuver in (*_AWAY, "merge") and v.heading), None)
     lead = leaves or next((v for v in vehicles if v.heading), None)
     if lead is None or lead.heading is None:
         return None
-    for t in _story(told):
+    for t in _story(statements):
         if match := CLOSED_LANES.search(t.text):
             parts = match.groupdict()
             word = next(parts[k] for k in ("side", "ahead", "noun", "blocked", "by") if parts[k]).lower()
@@ -61,16 +61,16 @@ def closed_lanes(told: Sequence[Statement], vehicles: Sequence[VehicleFacts]) ->
     return None
 
 
-def median_opening(told: Sequence[Statement]) -> Source | None:
+def median_opening(statements: Sequence[Statement]) -> Source | None:
     """Where a story tells of an opening in the median."""
-    found = ((t, match) for t in _story(told) if (match := MEDIAN_OPENING.search(t.text)))
+    found = ((t, match) for t in _story(statements) if (match := MEDIAN_OPENING.search(t.text)))
     return next((Source(t.number, match[0], MEDIAN_OPENING.id) for t, match in found), None)
 
 
-def in_gores(told: Sequence[Statement]) -> dict[str, InGore]:
+def in_gores(statements: Sequence[Statement]) -> dict[str, InGore]:
     """Vehicles in a gore, by what they do: stand there, strike an object there, cross it, or leave by the ramp."""
     found: dict[str, InGore] = {}
-    for t in _story(told):
+    for t in _story(statements):
         for match in _IN_GORE.finditer(t.text):
             how, who = next((how, who) for how, who in match.groupdict().items() if who)
             away = how == "crosses" and _TO_RAMP.search(t.text[match.end() : match.end() + 60])
@@ -78,18 +78,18 @@ def in_gores(told: Sequence[Statement]) -> dict[str, InGore]:
     return found
 
 
-def names_closure(told: Sequence[Statement]) -> bool:
+def names_closure(statements: Sequence[Statement]) -> bool:
     """Whether a story tells a closed lane at all, even without a direction."""
-    return any(CLOSED_LANES.search(t.text) or _CLOSURE.search(t.text) for t in _story(told))
+    return any(CLOSED_LANES.search(t.text) or _CLOSURE.search(t.text) for t in _story(statements))
 
 
-def names_gore(told: Sequence[Statement]) -> bool:
+def names_gore(statements: Sequence[Statement]) -> bool:
     """Whether a story names a gore at all."""
-    return any(_GORE.search(t.text) for t in _story(told))
+    return any(_GORE.search(t.text) for t in _story(statements))
 
 
-def _story(told: Sequence[Statement]) -> list[Statement]:
-    return [t for t in told if t.role in STORY_ROLES]
+def _story(statements: Sequence[Statement]) -> list[Statement]:
+    return [t for t in statements if t.role in STORY_ROLES]
 
 
 def _left_by(v: VehicleFacts) -> Side:

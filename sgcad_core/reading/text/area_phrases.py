@@ -31,22 +31,24 @@ def area_of(words: str) -> Zone | None:
 
 
 # ------------------------------------------------------------------ one form
-def plain(told: Statement, roster: Roster) -> str:
+def plain(statement: Statement, roster: Roster) -> str:
     """The sentence with possessives turned round: "V1's left side" -> "the left side of V1"."""
-    text = rule("zones.plural_number").sub(r"V\1's", told.text)
+    text = rule("zones.plural_number").sub(r"V\1's", statement.text)
     text = rule("zones.trailer_of_number").sub(r"\1", text)
     text = rule("zones.of_trailer").sub(r"of \1", text)
     text = rule("zones.opened_door").sub(r"\g<told>the \g<door> of \g<v>", text)
     text = rule("zones.possessive").sub(lambda m: f"the {m['area']} of {m['v']}", text)
     text = rule("zones.bare_possessive").sub(r"the \g<area> of \g<v>", text)
-    if told.subject:
-        text = rule("zones.area_of_the_vehicle").sub(rf"\g<area> of {told.subject}", text)
-    return rule("zones.its_area").sub(lambda m: _its(m, told, text, roster), text)
+    if statement.subject:
+        text = rule("zones.area_of_the_vehicle").sub(rf"\g<area> of {statement.subject}", text)
+    return rule("zones.its_area").sub(lambda m: _its(m, statement, text, roster), text)
 
 
-def _its(match: re.Match[str], told: Statement, text: str, roster: Roster) -> str:
-    starts = [subjects for at, _, subjects in subject_starts(told._replace(text=text), roster) if at < match.start()]
-    owner = starts[-1][0] if starts and starts[-1] else told.subject
+def _its(match: re.Match[str], statement: Statement, text: str, roster: Roster) -> str:
+    starts = [
+        subjects for at, _, subjects in subject_starts(statement._replace(text=text), roster) if at < match.start()
+    ]
+    owner = starts[-1][0] if starts and starts[-1] else statement.subject
     return f"the {match['area']} of {owner}" if owner else match.group()
 
 

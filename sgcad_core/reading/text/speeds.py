@@ -53,11 +53,11 @@ def read_speed(motion: VehicleMotion, text: str, weight: int) -> None:
         motion.add_value(motion.speeds_mph, weight, found.mph, found.words, found.rule)
 
 
-def read_speeds_beside(motions: Mapping[str, VehicleMotion], told: Sequence[Statement]) -> None:
+def read_speeds_beside(motions: Mapping[str, VehicleMotion], statements: Sequence[Statement]) -> None:
     """Speeds of vehicles whose own segments tell none: from a sentence that names no other vehicle, or right behind the
     name."""
     lacking = {v for v, motion in motions.items() if not motion.speeds_mph}
-    for t in told:
+    for t in statements:
         for vehicle, speed in _owned(t) if lacking else ():
             if vehicle in lacking:
                 motion = motions[vehicle]
@@ -65,25 +65,25 @@ def read_speeds_beside(motions: Mapping[str, VehicleMotion], told: Sequence[Stat
                 motion.add_value(motion.speeds_mph, 1, speed.mph, speed.words, speed.rule)
 
 
-def _owned(told: Statement) -> Iterator[tuple[str, Speed]]:
+def _owned(statement: Statement) -> Iterator[tuple[str, Speed]]:
     """Speeds of a sentence with the vehicle that each is of, where that is plain."""
-    named = list(rule("common.vehicle").finditer(told.text))
-    for speed in speeds(told.text):
-        if found := rule("speeds.for_vehicle").match(told.text, speed.end):
+    named = list(rule("common.vehicle").finditer(statement.text))
+    for speed in speeds(statement.text):
+        if found := rule("speeds.for_vehicle").match(statement.text, speed.end):
             yield found["vehicle"], speed
             continue
-        if rule("speeds.other").search(told.text):
+        if rule("speeds.other").search(statement.text):
             continue
-        if named and rule("speeds.somebody").search(told.text[: named[0].start()]):
+        if named and rule("speeds.somebody").search(statement.text[: named[0].start()]):
             continue
-        if len({m[0] for m in named}) == 1 or _opens(told.text, named, speed):
+        if len({m[0] for m in named}) == 1 or _opens(statement.text, named, speed):
             yield named[0][0], speed
             continue
-        if not named and told.subject and rule("speeds.pronoun").search(told.text):
-            yield told.subject, speed
+        if not named and statement.subject and rule("speeds.pronoun").search(statement.text):
+            yield statement.subject, speed
             continue
         before = [m for m in named if m.end() <= speed.start]
-        if before and rule("speeds.between").fullmatch(told.text, before[-1].end(), speed.start):
+        if before and rule("speeds.between").fullmatch(statement.text, before[-1].end(), speed.start):
             yield before[-1][0], speed
 
 

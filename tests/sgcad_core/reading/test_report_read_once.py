@@ -112,9 +112,9 @@ def test_what_nobody_tells_of_directions_is_an_assumption_of_the_first_vehicle_a
 # ------------------------------------------------------------------ once
 def test_a_case_splits_and_resolves_its_narrative_once(monkeypatch, tmp_path):
     counted = []
-    split, resolve = reader.split_sentences, reader.tell
+    split, resolve = reader.split_sentences, reader.resolve_sentences
     monkeypatch.setattr(reader, "split_sentences", lambda text: counted.append("split") or split(text))
-    monkeypatch.setattr(reader, "tell", lambda *told: counted.append("resolve") or resolve(*told))
+    monkeypatch.setattr(reader, "resolve_sentences", lambda *told: counted.append("resolve") or resolve(*told))
     source = ROOT / "docs" / "demo" / "left-turn-at-signal"
     ending = run_case(load(ROOT / "configs" / "template.yaml"), Case(source, "c1"), tmp_path, "d1")
     assert ending.result["status"] == "generated"
