@@ -36,7 +36,7 @@ def turned_to_roads(
         return crash
     turn = between(lead.heading, way)
     return replace(
-        crash, vehicles=tuple(turned_vehicle(v, turn) for v in crash.vehicles), turned_to_roads=told_way is not None
+        crash, vehicles=tuple(turned_vehicle(v, turn) for v in crash.vehicles), oriented=told_way is not None
     )
 
 
