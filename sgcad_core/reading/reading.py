@@ -1,13 +1,13 @@
-"""A crash report read once: five stages from the text to what happened, then inference.
+"""A crash report read once: five stages from the text to the events of the crash, then inference.
 
     normalise   one spelling for mentions, units and directions; every character keeps its place
     sentences   in order, each with what it is for (approach, impact, injury, ...)
-    mentions    who is who: vehicles by number, descriptions, "the other vehicle", "this driver"
-    clauses     whose deed is it: stretches of sentences with their subjects
+    mentions    actors resolved: vehicles by number, descriptions, "the other vehicle", "this driver"
+    clauses     stretches of sentences with their subjects
     events      motions, contacts and conditions, each as told
     infer       what follows: maneuvers, headings, sides, roads, junction
 
-`read` is the one entry, and `Reading` is all that anyone else consults: writers, validators, results. Places are
+`read` is the one entry, and `Reading` is all that writers, validators and results use. Places are
 character offsets in the narrative that was given. Knows no road network and no file format.
 """
 
@@ -116,7 +116,7 @@ class Events(NamedTuple):
 
 
 def normalise(narrative: TracedText) -> TracedText:
-    """Of a form the account alone, in one spelling; characters keep their places."""
+    """The account, without the lines of a form, in one spelling; characters keep their places."""
     return normalised(account(narrative))
 
 

@@ -82,7 +82,7 @@ class Numbering:
         """The replacement of a phrase: the number, at first behind the words that describe the actor."""
         phrase = Phrase(match)
         self.at += 1
-        if self.is_nobody(phrase):
+        if self.is_no_actor(phrase):
             return match.group()
         if match["attendant"]:
             return f"{'The' if match.group()[0].isupper() else 'the'} driver of V1"
@@ -104,7 +104,8 @@ class Numbering:
         actor.part = actor.part or phrase.part
         return self._written(phrase, actor, known is None)
 
-    def is_nobody(self, phrase: Phrase) -> bool:
+    def is_no_actor(self, phrase: Phrase) -> bool:
+        """Whether a phrase names no single actor that gets a number."""
         match = phrase.match
         before = match.string[max(0, match.start() - _NEAR) : match.start()]
         behind = rule("references.part").match(match.string, match.end())
@@ -162,6 +163,7 @@ class Numbering:
         return self.introduced(f"{det} {words}", f"(V{actor.number}){phrase.clauses}")
 
     def introduced(self, words: str, number: str) -> str:
+        """The words that first describe an actor, with its number."""
         return f"{words} {number}"
 
 
@@ -179,10 +181,12 @@ def number_cyclists(text: TracedText) -> TracedText:
 class _Cyclists(Numbering):
     """Numbers cyclists alone, and marks them as numbered here; no phrase of a vehicle means V1 or another actor."""
 
-    def is_nobody(self, phrase: Phrase) -> bool:
-        return phrase.kind != "bicycle" or not phrase.match["user"] or super().is_nobody(phrase)
+    def is_no_actor(self, phrase: Phrase) -> bool:
+        """Whether a phrase names no single actor that gets a number."""
+        return phrase.kind != "bicycle" or not phrase.match["user"] or super().is_no_actor(phrase)
 
     def introduced(self, words: str, number: str) -> str:
+        """The words that first describe an actor, with its number."""
         return f"{'An' if words[0].isupper() else 'an'} unnumbered {words.partition(' ')[2]} {number}"
 
 

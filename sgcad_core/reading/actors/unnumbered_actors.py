@@ -52,15 +52,18 @@ class Phrase:
 
     @property
     def definite(self) -> bool:
+        """Whether the phrase names a known actor: "the", "this", a possessive, or no determiner."""
         return (self.match["det"] or "the").lower() in ("the", "this", "its", "his", "her", "their")
 
     @property
     def head(self) -> str:
+        """The noun of the phrase, lower case."""
         word = next(filter(None, (self.match[k] for k in ("automated", "attendant", "user", "body"))), None)
         return (word or self.match.string[self.match.start("make") : self.match.end()]).lower()
 
     @property
     def modifiers(self) -> list[str]:
+        """The words between determiner and noun, lower case."""
         return [word.strip(",").lower() for word in self.match["mods"].split()]
 
     @property
@@ -118,9 +121,11 @@ class NamedActors:
     """Whether the subject has words of its own, so that no other phrase means it as long as another actor fits."""
 
     def subject(self) -> Actor | None:
+        """The report's own vehicle, once it is named."""
         return next((a for a in self.actors if a.subject), None)
 
     def add(self, phrase: Phrase, subject: bool, announced: bool) -> Actor | None:
+        """Adds an actor for a phrase; None where the most that are numbered are there."""
         if len(self.actors) == _MOST:
             return None
         actor = Actor(len(self.actors) + 1, phrase.kind, {phrase.head}, phrase.order or 1, subject, announced)

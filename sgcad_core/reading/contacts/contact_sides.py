@@ -24,6 +24,7 @@ _BENT = ("turn_left", "turn_right", "u_turn", *_SIDLING)
 
 
 def infer_contacts(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> list[ContactFacts]:
+    """Contacts of vehicles with all areas; the first two vehicles where none is told and nothing else was struck."""
     if not pairs and crash.roster.counted and crash.contact_mentions:
         return []  # the report tells a contact, with no vehicle
     if not pairs and any(

@@ -228,7 +228,7 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
 
 
 def _rest_clause(segment: Segment, text: str) -> str | None:
-    """From the verb of coming to rest on; None where the text has none."""
+    """The text from the verb of coming to rest on; None where it has none."""
     m = rule("course_rest.rest").search(text) or rule("course_rest.stopped_there").search(text)
     return text[m.start() :] if m else None
 

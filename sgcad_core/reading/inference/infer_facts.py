@@ -1,4 +1,4 @@
-"""From what is told to what follows: maneuvers decided, headings completed, contact sides completed.
+"""Inference from what is told: maneuvers decided, headings completed, contact sides completed.
 
 Evidence is added up: stated headings beat relation words, relation words beat what the sides that touched
 suggest. Angles here are clockwise degrees, as compass words turn. Knows no text.

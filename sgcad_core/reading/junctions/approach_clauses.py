@@ -69,7 +69,7 @@ class ClauseCutter:
             yield LaneClause(self.marks.mark, self.items, self.same and self.marked is not None)
         self.items, self.same = [], False
 
-    # -------------------------------------------------------------- whose lanes
+    # -------------------------------------------------------------- legs of the lanes
     def _marked(self, part: ApproachToken) -> Iterator[LaneClause]:
         before = self.marks.mark
         found = self.marks.of(part)

@@ -29,11 +29,13 @@ class LegReference:
 
     @property
     def axis(self) -> Compass | None:
+        """The one axis of the legs; None of several."""
         axes = {axis_of(bearing_of(key)) for key in self.keys if key not in APART}
         return next(iter(axes)) if len(axes) == 1 else None
 
 
 def bearing_of(key: str) -> Compass:
+    """The bearing in a key: "N" of "N" and of "axis N"."""
     return next(c for c in COMPASS if c == key.removeprefix("axis "))
 
 

@@ -166,7 +166,7 @@ def _named(story: Sequence[Statement]) -> tuple[JunctionKind | Literal["some"], 
 
 
 def _skew_deg(story: Sequence[Statement]) -> int:
-    """By how much the crossing road misses the right angle; 0 where the story tells of none."""
+    """Degrees by which the crossing road misses the right angle; 0 where none are told."""
     match = next((m for t in story if (m := _SKEWED.search(t.text))), None)
     if match is None:
         return 0

@@ -79,7 +79,7 @@ def _stem_meant(story: Sequence[Statement], vehicles: Sequence[VehicleFacts]) ->
 
 
 def _on_stem(known: Sequence[VehicleFacts], halted: Sequence[Compass]) -> VehicleFacts:
-    """Of vehicles on two axes the one on the ending leg: it turns, or it has the sign."""
+    """The vehicle on the ending leg, of vehicles on two axes: it turns, or it has the sign."""
 
     def likely(v: VehicleFacts) -> tuple[bool, bool, bool]:
         turns = v.maneuver in ("turn_left", "turn_right")
@@ -109,6 +109,7 @@ def crossing(vehicles: Sequence[VehicleFacts]) -> bool:
 def stem_told(
     story: Sequence[Statement], vehicles: Sequence[VehicleFacts], lead: Compass | None, only_compass: bool = False
 ) -> tuple[Compass, Source] | None:
+    """The bearing of the stem that the story tells by compass or, unless `only_compass`, by hand; and where."""
     for t in story:
         ends = ENDS.search(t.text)
         way = compass_of(ends["dir"]) if ends and ends["dir"] and rule("junction.junction").search(t.text) else None

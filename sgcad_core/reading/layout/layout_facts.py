@@ -58,6 +58,7 @@ class _Builder:
     defaults: Defaults
 
     def layout(self) -> RoadLayout:
+        """The whole layout, places and answered values laid over the roads."""
         roads = answered_layout(self.facts, with_approaches(self.facts, self._roads_alone()))
         return with_opening(self.facts, with_closed(self.facts, with_edges(self.facts, roads)))
 

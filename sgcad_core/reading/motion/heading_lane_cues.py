@@ -21,6 +21,7 @@ _WAYS = ("dir", "dir2", "dir3", "dir4")
 
 
 def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
+    """Adds the headings and exits of a segment."""
     told = [(m, by) for by in (rule("headings.heading"), rule("headings.heading_bare")) for m in by.finditer(text)]
     for m, by in sorted(told, key=lambda found: found[0].start()):
         words = m.groupdict()
@@ -91,6 +92,7 @@ def _note_heading(motion: VehicleMotion, word: str, weight: int, by: str) -> Non
 
 
 def read_relations(motion: VehicleMotion, text: str, weight: int, vehicle: str, roster: Roster) -> None:
+    """Adds the directions relative to the other vehicle: same, opposite, crossing."""
     for told in of_role("kin"):
         relation, word = told.yields["kin"], told.yields.get("word", "")
         for m in told.finditer(text):
@@ -108,6 +110,7 @@ _LANE = rule("surroundings.lane")
 
 
 def read_lane(motion: VehicleMotion, text: str) -> None:
+    """Sets the first told lane, by number or by word."""
     if motion.lane or motion.lane_word:
         return
     for m in _LANE.finditer(text):
@@ -153,6 +156,7 @@ _SHOULDER = rule("surroundings.shoulder")
 
 
 def read_origin_and_target(motion: VehicleMotion, text: str) -> None:
+    """Sets the driveway, lot, ramp or shoulder that the vehicle came from or turned into."""
     origin = _ORIGIN.search(text)
     if motion.origin is None and (found := _came_from(text, origin)):
         motion.origin, words, by = found

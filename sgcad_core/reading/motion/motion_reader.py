@@ -133,6 +133,7 @@ def _until_rest(text: str) -> str:
 
 
 def read_critical_event(found: dict[str, VehicleMotion], statement: Statement, roster: Roster) -> None:
+    """Adds cues and relations of a critical-event sentence."""
     text = statement.text.lower()
     if not rule("critical_events.event").search(text):
         return

@@ -24,10 +24,10 @@ from sgcad_core.records.specs import Area
 
 @dataclass(frozen=True)
 class Confidence:
-    """How far a fact is believed before anything is measured: plain figures, to be calibrated on truth.
+    """Confidence of facts before any measurement: plain figures, to be calibrated on truth.
 
-    Stated by the report itself; by somebody whom it quotes or by its codes; following from what is stated; answered by
-    a model; assumed. `conflict`: what is left of it where the report also says otherwise.
+    Stated by the report itself; by a quoted person or by its codes; following from what is stated; answered by a model;
+    assumed. `conflict`: factor where the report also says otherwise.
     """
 
     stated: float = 0.9

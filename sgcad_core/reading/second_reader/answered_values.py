@@ -86,7 +86,7 @@ def _actor(actor: Actor) -> Iterator[tuple[str, str, Any]]:
 
 
 def _edges_of(actor: Actor, legs: tuple[Leg, ...]) -> tuple[str, ...]:
-    """On which edge of its approach a vehicle drives."""
+    """Edges of its approach on which a vehicle drives."""
     bearing = actor.road.removesuffix("_outer")
     lanes = next((leg.lanes_in for leg in legs if leg.bearing == bearing), 0)
     return ("right",) * (actor.lane == 1) + ("left",) * (actor.lane == lanes)

@@ -216,6 +216,7 @@ def control_of(legs: Iterable[Leg]) -> tuple[tuple[str, str], ...]:
 
 
 def by_id(sides: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
+    """Sides in the order of the ids, as a value that can be compared."""
     return tuple(sorted(sides.items()))
 
 

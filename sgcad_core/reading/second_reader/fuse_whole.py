@@ -173,7 +173,7 @@ def _with_values(v: VehicleFacts, values: Mapping[str, Claim] | Mapping[str, Tak
     return v
 
 
-# ------------------------------------------------------------------ who moved how, who met whom
+# ------------------------------------------------------------------ motions and contacts
 def _crash(crash: CrashFacts, taken: Mapping[str, TakenValue]) -> tuple[CrashFacts, set[str]]:
     """The crash with the values that fit into it, and their fields."""
     used = {key for v in crash.vehicles for name in _VEHICLE if (key := f"{name}.{v.id}") in taken}

@@ -49,7 +49,7 @@ class Account(NamedTuple):
 
 
 def account_of(narrative: str) -> Account:
-    """Of a narrative, read by the rules."""
+    """Reads a narrative by the rules and keeps the results of the stages."""
     even = stages.normalise(TracedText.of(narrative))
     found = stages.sentences(even)
     named = stages.mentions(found, not has_actor_numbers(even.text))
@@ -82,7 +82,7 @@ def words(account: Account) -> set[str]:
 
 
 def runs(found: Iterable[str]) -> set[str]:
-    """Of words those of two and three in a row: by how many of them are known one tells how foreign a text is."""
+    """Features of two and three words in a row; the share of known ones tells how foreign a text is."""
     return {one for one in found if one.startswith("U:") and "_" in one}
 
 

@@ -89,7 +89,7 @@ def areas(contact: ContactFacts) -> tuple[Area, Area]:
 
 
 def rule_values(reading: Reading) -> RuleValues:
-    """Of a reading. Without a contact of the subject nothing is said of the other one."""
+    """The values of a reading by the rules; without a contact of the subject none for its partner."""
     crash, junction = reading.crash, reading.roads.junction
     values: dict[str, Value] = {"junction": junction.kind not in ("none", "parking_lot")}
     told = {"junction"} if junction.stated else set()

@@ -123,7 +123,7 @@ def sentences(text: str) -> tuple[Sentence, ...]:
 
 
 def split_sentences(text: TracedText) -> tuple[Sentence, ...]:
-    """The sentences of a normalized text; those who have no number get one."""
+    """The sentences of a normalized text; actors without a number get one."""
     found: list[Sentence] = []
     numbered = number_parked(number_cyclists(number_actors(named_in_full(in_third_person(text)))))
     blocks = [block for block in numbered.split_at("\n\n") if block.text]
