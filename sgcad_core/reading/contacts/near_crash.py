@@ -43,7 +43,6 @@ class NearMiss(NamedTuple):
     """Contacts that would have happened; none where two vehicles come together and no more is told."""
     evasions: tuple[EvasionTold, ...] = ()
     clearance_m: float | None = None
-    clearance_at: Source | None = None
 
 
 @dataclass(frozen=True)
@@ -75,11 +74,8 @@ def near_miss(
         return NearMiss() if together and len(roster.ids) > 1 else None
     first = missed[0]
     pair = (first.actor, first.other)
-    clearance = next(((m, t) for t in statements if t.role in _READ and (m := told_clearance_m(t.text))), None)
-    return NearMiss(
-        missed, evaded(cut, first.number, pair, roster.ids[0]), clearance[0] if clearance else None,
-        Source(clearance[1].number, "", "near_events.clearance") if clearance else None,
-    )  # fmt: skip
+    clearance = next((m for t in statements if t.role in _READ and (m := told_clearance_m(t.text))), None)
+    return NearMiss(missed, evaded(cut, first.number, pair, roster.ids[0]), clearance)
 
 
 def near_misses(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:

@@ -14,7 +14,6 @@ from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.records.specs import Turn
 
-Use = Literal["R", "T", "L"]
 Uses = frozenset[str]
 _TURNS: dict[Uses, Turn] = {
     frozenset("R"): "right", frozenset("RT"): "through_right", frozenset("T"): "through",

@@ -75,7 +75,6 @@ class VehicleMotion:
     speeds_mph: list[WeightedValue] = field(default_factory=list)
     origin: Access | None = None
     target: Access | None = None
-    axes: list[str] = field(default_factory=list)
     from_side: Literal["left", "right"] | None = None
     sources: dict[str, Source] = field(default_factory=dict)
     """Where lane, origin, target, each exit ("exit W") and where it faces or backs to ("faces W", "backs W") were first
