@@ -149,10 +149,12 @@ def clauses(named: Mentions) -> tuple[Segment, ...]:
     return segments(named.statements, named.roster)
 
 
-def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...], *, of_study: bool = False) -> Events:
+def events(
+    found: tuple[Sentence, ...], named: Mentions, segments: tuple[Segment, ...], *, of_study: bool = False
+) -> Events:
     """Motions, contacts (of a near crash those that did not come about), conditions."""
     roster, struck = named.roster, contact_mentions(named.statements, named.roster)
-    near = None if struck else near_miss(named.statements, cut, roster, of_study=of_study)
+    near = None if struck else near_miss(named.statements, segments, roster, of_study=of_study)
     hits = near.contact_mentions if near else struck
     subject = roster.ids[0] if roster.ids else None
     met = (
@@ -160,14 +162,14 @@ def events(found: tuple[Sentence, ...], named: Mentions, cut: tuple[Segment, ...
         for b in hits
         if subject in (b.actor, b.other) and {b.actor, b.other} <= set(roster.ids) and not b.summary
     )
-    moved = read_motions(named.statements, before_evasion(cut) if of_study else cut, roster, next(met, None))
+    moved = read_motions(named.statements, before_evasion(segments) if of_study else segments, roster, next(met, None))
     cues = acting_segments(named.statements, roster)
     course = CoursesRead() if near else courses_told(named.statements, cues, roster, _coded_loss(moved))
     impacts = () if near else with_resting_contacts(later_impacts(named.statements, cues, roster, struck), course)
     walks = {b.other: walk_of(b.other, named.statements) for b in hits if b.other not in roster.ids}
     missed = frozenset(frozenset((b.actor, b.other)) for b in near_misses(named.statements, roster))
     crash_told = CrashTold(roster, moved, hits, course, impacts, near, walks, missed)
-    return Events(crash_told, conditions(found), signal_states(cut))
+    return Events(crash_told, conditions(found), signal_states(segments))
 
 
 def _coded_loss(moved: Mapping[str, VehicleMotion]) -> dict[str, ManeuverCue]:

@@ -80,16 +80,16 @@ def _cut(statement: Statement, roster: Roster) -> list[Segment]:
 
 def courses_told(
     statements: Sequence[Statement],
-    cut: Sequence[Segment],
+    segments: Sequence[Segment],
     roster: Roster,
     coded: Mapping[str, ManeuverCue] | None = None,
 ) -> CoursesRead:
-    """The course of every vehicle as told. `cut`: `acting_segments`; `coded`: losses of control by the codes."""
+    """The course of every vehicle as told. `segments`: of `acting_segments`; `coded`: losses of control by codes."""
     impact = min((t.number for t in statements if t.role == "impact"), default=10_000)
     heard = {v: _CourseReader() for v in roster.ids}
     for vehicle, cue in (coded or {}).items():
         heard[vehicle].add("lost_control", True, cue.source)
-    for segment in sorted(cut, key=lambda s: s.role in _RETOLD):
+    for segment in sorted(segments, key=lambda s: s.role in _RETOLD):
         if segment.role in UNREAD:
             continue
         for vehicle in segment.subjects:
@@ -111,13 +111,13 @@ def _caused(m: re.Match[str]) -> str:
     return f"{m['who']} {'were' if m['who'].startswith('both') else 'was'} {verb}"
 
 
-def _with_own_acts(cut: Sequence[Segment], statement: Statement) -> list[Segment]:
+def _with_own_acts(segments: Sequence[Segment], statement: Statement) -> list[Segment]:
     """Segments of one sentence, with an onlooker's own acts given back to it.
 
     "V2 noticed V1 turning into her path and steered right": V2 steered, as it did in "avoided V2 by steering left".
     """
     found: list[Segment] = []
-    for segment in cut:
+    for segment in segments:
         before = found[-1] if found else None
         onlooker = before.subjects if before and rule("course_evasion.perceives").search(before.text) else ()
         onlooker = onlooker or (

@@ -25,12 +25,15 @@ GROUND = ("curb", "island", "median", "ditch", "ground")
 
 
 def later_impacts(
-    statements: Sequence[Statement], cut: Sequence[Segment], roster: Roster, contact_mentions: Sequence[ContactMention]
+    statements: Sequence[Statement],
+    segments: Sequence[Segment],
+    roster: Roster,
+    contact_mentions: Sequence[ContactMention],
 ) -> tuple[ImpactRead, ...]:
-    """Contacts with things and second contacts of the same pair, in the order of the text. `cut`: `acting_segments`."""
+    """Contacts with things and second contacts of the same pair, in order. `segments`: of `acting_segments`."""
     first = next((b for b in contact_mentions if b.other in roster.ids), None)
     start = first.number if first else -1
-    things = [read for segment in cut for read in _things(segment, start)]
+    things = [read for segment in segments for read in _things(segment, start)]
     again = list(_again(statements, roster, contact_mentions, first)) if first else []
     people = list(_people(roster, contact_mentions, first)) if first else []
     found = sorted([*_once(things), *again, *people], key=lambda read: read.source.number)

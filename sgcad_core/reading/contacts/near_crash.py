@@ -59,7 +59,7 @@ class NearCrashFacts:
 
 
 def near_miss(
-    statements: Sequence[Statement], cut: Sequence[Segment], roster: Roster, *, of_study: bool
+    statements: Sequence[Statement], segments: Sequence[Segment], roster: Roster, *, of_study: bool
 ) -> NearMiss | None:
     """The near crash of a report that tells no contact; None where it tells none either.
 
@@ -75,7 +75,7 @@ def near_miss(
     first = missed[0]
     pair = (first.actor, first.other)
     clearance = next((m for t in statements if t.role in _READ and (m := told_clearance_m(t.text))), None)
-    return NearMiss(missed, evaded(cut, first.number, pair, roster.ids[0]), clearance)
+    return NearMiss(missed, evaded(segments, first.number, pair, roster.ids[0]), clearance)
 
 
 def near_misses(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
@@ -103,12 +103,12 @@ def _missed(statement: Statement, roster: Roster) -> tuple[ContactMention, ...]:
     return ()
 
 
-def before_evasion(cut: Iterable[Segment]) -> tuple[Segment, ...]:
+def before_evasion(segments: Iterable[Segment]) -> tuple[Segment, ...]:
     """Segments cut before the evasion: the rest is the approach of the vehicle.
 
     Braking to avoid a contact is no maneuver before it.
     """
-    return tuple(map(_before_evasion, cut))
+    return tuple(map(_before_evasion, segments))
 
 
 def _before_evasion(segment: Segment) -> Segment:
@@ -121,13 +121,13 @@ def _could_not(match: re.Match[str]) -> bool:
     return bool(rule("near_events.could_not").search(match.string[: match.start()]))
 
 
-def evaded(cut: Sequence[Segment], number: int, pair: tuple[str, ...], watched: str) -> tuple[EvasionTold, ...]:
+def evaded(segments: Sequence[Segment], number: int, pair: tuple[str, ...], watched: str) -> tuple[EvasionTold, ...]:
     """Evasions of a pair in a sentence or beside it, one maneuver each.
 
     Of vehicles other than the `watched` one only acts done to avoid count: others brake for reasons of their own.
     """
     found: dict[str, EvasionTold] = {}
-    for segment in sorted(cut, key=lambda s: (abs(s.number - number), s.number)):
+    for segment in sorted(segments, key=lambda s: (abs(s.number - number), s.number)):
         if abs(segment.number - number) > _NEAR or segment.role not in _READ:
             continue
         for vehicle in segment.subjects:

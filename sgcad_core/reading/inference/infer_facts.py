@@ -29,23 +29,23 @@ from sgcad_core.records.specs import Area, Compass, Maneuver
 
 def infer_crash(crash: CrashTold) -> CrashInferred:
     """Decide everything that the text allows to decide."""
-    out = CrashInferred()
+    inferred = CrashInferred()
     pairs = _vehicle_contacts(crash)
-    _stated_headings(crash, out)
+    _stated_headings(crash, inferred)
     for v in crash.roster.ids:
         motion = crash.motions[v]
-        _maneuver(out, v, decide(motion, _areas_hit(v, pairs), _same_way_turn(crash, out, v)))
+        _maneuver(inferred, v, decide(motion, _areas_hit(v, pairs), _same_way_turn(crash, inferred, v)))
         if motion.speeds_mph:
-            out.speeds[v] = _take(out, f"{v} speed", motion.speeds_mph)
-    _turned_headings(crash, out)
-    _faced_headings(crash, out)
-    _still_moving(crash, out, pairs)
-    _change_hands(crash, out, pairs)
-    _mend_headings(crash, out, pairs)
-    _complete_headings(crash, out, pairs)
-    out.exits = {v: e for v in crash.roster.ids if (e := _exit(crash.motions[v], out, v)) is not None}
-    out.contacts = infer_contacts(crash, out, pairs)
-    return out
+            inferred.speeds[v] = _take(inferred, f"{v} speed", motion.speeds_mph)
+    _turned_headings(crash, inferred)
+    _faced_headings(crash, inferred)
+    _still_moving(crash, inferred, pairs)
+    _change_hands(crash, inferred, pairs)
+    _mend_headings(crash, inferred, pairs)
+    _complete_headings(crash, inferred, pairs)
+    inferred.exits = {v: e for v in crash.roster.ids if (e := _exit(crash.motions[v], inferred, v)) is not None}
+    inferred.contacts = infer_contacts(crash, inferred, pairs)
+    return inferred
 
 
 def _still_moving(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:

@@ -30,7 +30,7 @@ _UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint"
 
 
 def read_motions(
-    statements: Sequence[Statement], cut: Iterable[Segment], roster: Roster, struck_at: int | None = None
+    statements: Sequence[Statement], segments: Iterable[Segment], roster: Roster, struck_at: int | None = None
 ) -> dict[str, VehicleMotion]:
     """Motion of every vehicle of the roster; `struck_at`: the sentence of the contact, where that is known."""
     found = {v: VehicleMotion(watched=v == roster.ids[0], ordered=roster.counted) for v in roster.ids}
@@ -39,7 +39,7 @@ def read_motions(
     impact = min((t.number for t in statements if t.role == "impact"), default=len(statements))
     impact = struck_at if roster.counted and struck_at is not None else impact
     contact_sentence = next((t for t in statements if t.number == impact), None) if roster.counted else None
-    for segment in cut:
+    for segment in segments:
         if segment.role in _UNREAD or (contact_sentence and _behind(contact_sentence, segment)):
             continue
         for vehicle in segment.subjects:
