@@ -18,7 +18,7 @@ from sgcad_core.execution.contact import avoided, closest_approach, first_with, 
 from sgcad_core.execution.playback import sizes_of
 from sgcad_core.execution.scenario_facts import actor_facts_written, road_facts_written
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.reading.inference.reading_limits import beyond
+from sgcad_core.reading.inference.reading_limits import limit_notes
 from sgcad_core.reading.text.traced_text import redactions
 from sgcad_core.records.edits import by_person
 from sgcad_core.roads.lane_graph import network_figures, segments
@@ -257,7 +257,7 @@ def notes_told(record: CaseRecord) -> list[Note]:
     told = [attempt for outcome in record.outcomes.values() if (attempt := outcome.told_by)]
     facts = {fact.field: fact for fact in record.reading.facts} if record.reading else {}
     notes = notes_of("reader", record.notes, facts)
-    notes += notes_of("limit", beyond(record.reading) if record.reading else (), facts)
+    notes += notes_of("limit", limit_notes(record.reading) if record.reading else (), facts)
     for finding in (f for attempt in told for f in attempt.findings if f.severity in ("doubt", "note")):
         notes += notes_of("finding", [finding.line()], facts, finding.where)
     notes += notes_of("held", [f"{a.stage}: held to {hold.line()}" for a in told for hold in a.held], facts)

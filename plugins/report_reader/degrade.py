@@ -20,7 +20,7 @@ from PIL import Image, ImageFilter
 
 from sgcad_core.case.records import CrashReport, Diagram
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.text.traced_text import Traced, joined, placed, runs
+from sgcad_core.reading.text.traced_text import TracedText, joined, placed, runs
 
 Level = Literal[
     "full", "semantic_noise", "blur_weak", "blur_medium", "blur_strong", "modal_conflict", "critical_depletion",
@@ -56,7 +56,7 @@ def degrade(report: CrashReport, level: Level) -> CrashReport:
     return report.model_copy(update=changed)
 
 
-def _without_numbers(text: Traced) -> tuple[Traced, str]:
+def _without_numbers(text: TracedText) -> tuple[TracedText, str]:
     """Removes numbers except those of actors (V1, Vehicle #2, vehicle one), which identify them."""
     digits = len(_DIGITS.findall(text.text))
     bare = text.sub(_DIGITS, "")
@@ -65,7 +65,7 @@ def _without_numbers(text: Traced) -> tuple[Traced, str]:
     return bare.strip(), f"{digits + words} numbers removed"
 
 
-def _turned_round(text: Traced) -> tuple[Traced, str]:
+def _turned_round(text: TracedText) -> tuple[TracedText, str]:
     def swap(match: re.Match[str]) -> str:
         word = match.group(0)
         other = _TURNED[word.lower()]
@@ -75,11 +75,11 @@ def _turned_round(text: Traced) -> tuple[Traced, str]:
     return text.sub(_DIRECTED, swap), f"{count} directions and sides turned: N>E>S>W>N, left<>right, front<>back"
 
 
-def _without_critical(text: Traced) -> tuple[Traced, str]:
+def _without_critical(text: TracedText) -> tuple[TracedText, str]:
     sentences = text.split(_SENTENCE_GAP)
     kept = [s for s in sentences if not _CRITICAL.search(s.text)]
     left = joined(kept, " ")
-    nothing = Traced(SPARSE, [0] * len(SPARSE), [0] * len(SPARSE))
+    nothing = TracedText(SPARSE, [0] * len(SPARSE), [0] * len(SPARSE))
     return left if left.text else nothing, f"{len(sentences) - len(kept)} of {len(sentences)} sentences removed"
 
 

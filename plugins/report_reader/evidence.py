@@ -21,7 +21,7 @@ from sgcad_core.case.records import CrashReport, Diagram
 from sgcad_core.errors import BadInput
 from sgcad_core.interfaces import ReportReader
 from sgcad_core.reading.text.privacy import redacted
-from sgcad_core.reading.text.traced_text import Traced, joined, runs
+from sgcad_core.reading.text.traced_text import TracedText, joined, runs
 
 MAX_NARRATIVE = 100_000
 """Characters: the longest real report here has 6,000."""
@@ -63,7 +63,7 @@ class EvidenceReader(ReportReader, ABC):
         notes: tuple[str, ...] = (),
     ) -> CrashReport:
         """Assembles a report by the switches. Raises BadInput if no evidence is left."""
-        text = checked_narrative(Traced.of(narrative), source) if self.use_narrative else Traced.of("")
+        text = checked_narrative(TracedText.of(narrative), source) if self.use_narrative else TracedText.of("")
         text = redacted(text) if self.redact_persons else text
         if self.use_coded_fields and coded:
             text = _appended(text, f"\n\nCoded fields:\n{coded_lines(coded)}", len(narrative)).strip()
@@ -82,10 +82,10 @@ class EvidenceReader(ReportReader, ABC):
         return degrade(report, self.robustness_level)
 
 
-def _appended(text: Traced, more: str, end: int) -> Traced:
+def _appended(text: TracedText, more: str, end: int) -> TracedText:
     """The text with an addition of the program, placed at the narrative's end."""
     nowhere = [end] * len(more)
-    return joined([text, Traced(more, nowhere, nowhere)])
+    return joined([text, TracedText(more, nowhere, nowhere)])
 
 
 def safe_case(name: str) -> str:
@@ -111,7 +111,7 @@ def decode(raw: bytes, source: Path) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def checked_narrative(text: Traced, source: Path) -> Traced:
+def checked_narrative(text: TracedText, source: Path) -> TracedText:
     """The narrative, stripped. Raises BadInput if it is empty or does not read like English."""
     text = text.strip()
     if len(text.text) > MAX_NARRATIVE:

@@ -22,7 +22,8 @@ from sgcad_core.findings import Finder
 from sgcad_core.interfaces import Ask
 from sgcad_core.kinds import DRIVEWAY, RAMP, actor_kind
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.motion.motion_record import Access
 from sgcad_core.reading.text.compass import angle_of
 from sgcad_core.records.specs import (

@@ -18,7 +18,8 @@ from sgcad_core.case.records import Evidence, Finding, Hold, RoadNetwork, Scenar
 from sgcad_core.findings import Finder
 from sgcad_core.interfaces import Validator
 from sgcad_core.reading.behavior.exit_assignment import goes_tail_first, square_rad
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.layout.road_ways import Way, apart, degree, exits, turn_of, ways_of
 from sgcad_core.reading.text.compass import angle_of, compass_of_angle
 from sgcad_core.records.specs import Area, BehaviorSpec, Contact, Maneuver, RoadSpec

@@ -20,7 +20,7 @@ from typing import Any
 
 from research.rows.coded_incidents import BLIND_OF, Incident, by_hash, of_pool
 from sgcad_core.reading.reading import read
-from sgcad_core.reading.second_reader.seven_question_gist import rules_say
+from sgcad_core.reading.second_reader.seven_question_gist import rule_values
 
 VALIDATION = 1
 """Remainder of the hash of an id, of `BLIND_OF`; 0 is blind."""
@@ -75,7 +75,7 @@ def _sides(codes: list[str]) -> tuple[str, ...]:
 
 def row(incident: Incident) -> dict[str, Any]:
     """A report as a row: sets of the codes, narrowed to what the text tells outright in the rules' reading."""
-    values, told = rules_say(read(incident.text))
+    values, told = rule_values(read(incident.text))
     sets = {
         key: (values[key],) if key in told and values[key] in some else some
         for key, some in allowed(incident.truth).items()

@@ -8,7 +8,7 @@ from sgcad_core.account.inputs import Made
 from sgcad_core.account.records import Item
 from sgcad_core.case.records import ObservedContact
 from sgcad_core.execution.contact import avoided, closest_approach
-from sgcad_core.reading.crash_facts import ContactFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.language import of_role
 from sgcad_core.records.course import ImpactTold
 from sgcad_core.records.specs import Area

@@ -67,15 +67,21 @@ class CrashReport(ReadOnce):
         """What is read of the narrative, with places in the text as it was written: by the rules and, where there is a
         second opinion, as both together have it; and all that as people have it."""
         from sgcad_core.reading.reading import read
-        from sgcad_core.reading.reading_with_edits import mended  # patterns of half a second, which not everybody needs
-        from sgcad_core.reading.second_reader.fuse_gist import fused
-        from sgcad_core.reading.second_reader.fuse_whole import whole
+        from sgcad_core.reading.reading_with_edits import (
+            with_edits,  # patterns of half a second, which not everybody needs
+        )
+        from sgcad_core.reading.second_reader.fuse_gist import fused_with_gist
+        from sgcad_core.reading.second_reader.fuse_whole import fused_with_answer
         from sgcad_core.reading.text.traced_text import placed
 
         found = read(placed(self.narrative, self.places))
         if self.opinion:
-            found = whole(found, self.opinion) if self.opinion.answered else fused(found, self.opinion)
-        return mended(found, self.edits)
+            found = (
+                fused_with_answer(found, self.opinion)
+                if self.opinion.answered
+                else fused_with_gist(found, self.opinion)
+            )
+        return with_edits(found, self.edits)
 
 
 class Context(ReadOnce):

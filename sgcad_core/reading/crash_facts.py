@@ -1,7 +1,7 @@
-"""The facts of a crash as its narrative tells them: who moved how, who struck whom, in what conditions.
+"""The facts of a crash as its narrative tells them: vehicles with their motion, contacts, conditions.
 
-Records, and how they are put together from what was read and settled. What the text leaves open is inferred from
-what it says (relation words, critical events, the sides that touched) and marked as such. Knows no road network.
+Records, and how they are put together from what was read and inferred. What the text leaves open is inferred from what
+it says (relation words, critical events, the sides that touched) and marked as such. Knows no road network.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.kinds import actor_kind
-from sgcad_core.reading.actors.pedestrians_objects import OtherFacts, others
-from sgcad_core.reading.actors.vehicles import Identity
-from sgcad_core.reading.actors.walkers import Walk, side_facing
-from sgcad_core.reading.contacts.near_crash import NearFacts
+from sgcad_core.reading.actors.people_objects import OtherFacts, WalkDirection, others, side_facing
+from sgcad_core.reading.actors.vehicles import VehicleDescription
+from sgcad_core.reading.contacts.contact_records import ContactFacts
+from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.inference.gaps import Gap
-from sgcad_core.reading.inference.inference_state import AREAS, Draft, Settled, end_of
+from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold, end_of
 from sgcad_core.reading.motion.maneuvers import meant_turn, started_from_stop
-from sgcad_core.reading.motion.motion_record import Access, Motion
+from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
 from sgcad_core.reading.text.conditions import Conditions
 from sgcad_core.records.course import Courses, ImpactTold
 from sgcad_core.records.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
@@ -58,29 +58,12 @@ class VehicleFacts:
     from_stop: bool = False
     """Whether it had just started from a stop."""
     faces: bool = False
-    """Whether the heading that is told is where it faces: who backs goes the other way."""
+    """Whether the told heading is the facing: a vehicle that backs then goes the other way."""
 
     @property
     def standing(self) -> bool:
         """Whether it does not move before the contact."""
         return self.maneuver in ("stopped", "parked")
-
-
-@dataclass(frozen=True)
-class ContactFacts:
-    """One contact; `struck` may be an object or other road user of `CrashFacts.others`."""
-
-    striker: str
-    struck: str
-    striker_area: Area
-    struck_area: Area
-    areas_stated: bool
-    """Whether the text names both sides, and no corner."""
-    stated: bool = True
-    """False: the pair is inferred, the text tells no contact."""
-    striker_may: tuple[Area, ...] = AREAS
-    """Sides that the text allows: both of a corner, all four where it names none."""
-    struck_may: tuple[Area, ...] = AREAS
 
 
 @dataclass(frozen=True)
@@ -97,12 +80,12 @@ class CrashFacts:
     """Evasion, spin and rest by vehicle, of those of which anything is told."""
     impacts: tuple[ImpactTold, ...] = ()
     """Contacts behind the first one with things, and of the same pair once more, in order."""
-    near_crash: NearFacts | None = None
-    """Where set, nobody touches: the first of `contacts` is the one that was avoided."""
+    near_crash: NearCrashFacts | None = None
+    """Set for a near crash: the first of `contacts` is the one that was avoided."""
     oriented: bool = False
     """Whether any heading is told: if not, all headings are right only relative to one another."""
     unnumbered: bool = False
-    """Whether the report numbers nobody: V1 is its subject."""
+    """Whether the report has no vehicle numbers: V1 is its subject."""
     gore: Mapping[str, str] = field(default_factory=dict)
     """Vehicles in a gore, and what they do there (`places.InGore`)."""
     gap: Gap | None = None
@@ -117,56 +100,62 @@ _SURFACE: dict[Weather | None, Surface] = {"rain": "wet", "snow": "snow", "sleet
 """Surface where only the weather is told."""
 
 
-def _vehicle(v: Identity, motion: Motion, settled: Settled) -> VehicleFacts:
+def _vehicle(v: VehicleDescription, motion: VehicleMotion, inferred: CrashInferred) -> VehicleFacts:
     """One vehicle's facts put together."""
     meant = meant_turn(motion)
-    from_stop = started_from_stop(motion, settled.maneuvers[v.id])
-    over = from_stop and settled.speeds.get(v.id, 0) > FROM_STOP_MPH and _told_before_stop(motion, settled, v.id)
+    from_stop = started_from_stop(motion, inferred.maneuvers[v.id])
+    over = from_stop and inferred.speeds.get(v.id, 0) > FROM_STOP_MPH and _told_before_stop(motion, inferred, v.id)
     return VehicleFacts(
         id=v.id, kind=v.kind, year=v.year, make=v.make, model=v.model,
-        heading=settled.headings.get(v.id), heading_stated=v.id in settled.stated, exit_heading=settled.exits.get(v.id),
-        maneuver=settled.maneuvers[v.id], maneuver_stated=v.id in settled.told_maneuvers,
-        lane=motion.lane, lane_word=motion.lane_word, speed_mph=None if over else settled.speeds.get(v.id),
+        heading=inferred.headings.get(v.id), heading_stated=v.id in inferred.stated,
+        exit_heading=inferred.exits.get(v.id), maneuver=inferred.maneuvers[v.id],
+        maneuver_stated=v.id in inferred.told_maneuvers,
+        lane=motion.lane, lane_word=motion.lane_word, speed_mph=None if over else inferred.speeds.get(v.id),
         trailer=v.trailer, origin=motion.origin, target=motion.target,
         meant=meant.maneuver if meant else None, from_stop=from_stop,
-        faces=_faces(motion, settled.headings.get(v.id)),
+        faces=_faces(motion, inferred.headings.get(v.id)),
     )  # fmt: skip
 
 
-def _faces(motion: Motion, heading: Compass | None) -> bool:
+def _faces(motion: VehicleMotion, heading: Compass | None) -> bool:
     """Whether a heading is where a vehicle faces: it is told so, or an account in order has it drive there before."""
     return f"faces {heading}" in motion.sources or (motion.ordered and f"backs {heading}" not in motion.sources)
 
 
-def _told_before_stop(motion: Motion, settled: Settled, vehicle: str) -> bool:
+def _told_before_stop(motion: VehicleMotion, inferred: CrashInferred, vehicle: str) -> bool:
     """Whether the told speed is that of the approach to a stop from which the vehicle then started."""
-    cue = settled.sources.get(f"{vehicle} speed")
-    stops = [d.number for d in motion.deeds if d.kind == "stopped"]
-    return cue is not None and bool(stops) and cue.number <= max(stops)
+    source = inferred.sources.get(f"{vehicle} speed")
+    stops = [d.number for d in motion.cues if d.kind == "stopped"]
+    return source is not None and bool(stops) and source.number <= max(stops)
 
 
-def _without_vehicle(draft: Draft, settled: Settled, beside: tuple[OtherFacts, ...]) -> tuple[ContactFacts, ...]:
+def _without_vehicle(
+    crash: CrashTold, inferred: CrashInferred, beside: tuple[OtherFacts, ...]
+) -> tuple[ContactFacts, ...]:
     """What vehicles hit that has no number: objects with the front unless told, people on the side from which they are
     met as they go, their left one where that is not told."""
     ids = {o.word: o for o in beside}
     found: dict[str, ContactFacts] = {}
-    for blow in draft.blows:
-        other = ids.get(blow.other)
+    for mention in crash.contact_mentions:
+        other = ids.get(mention.other)
         if other and other.id not in found:
-            area = end_of(blow.actor_area) or "front"
-            faces = side_facing(draft.walks.get(blow.other, Walk()), settled.headings.get(blow.actor)) or "left"
+            area = end_of(mention.actor_area) or "front"
+            faces = (
+                side_facing(crash.walks.get(mention.other, WalkDirection()), inferred.headings.get(mention.actor))
+                or "left"
+            )
             side: Area = "front" if actor_kind(other.kind).thing else faces
-            found[other.id] = ContactFacts(blow.actor, other.id, area, side, False)
+            found[other.id] = ContactFacts(mention.actor, other.id, area, side, False)
     return tuple(found.values())
 
 
 def _subject_first(
     vehicles: tuple[VehicleFacts, ...], contacts: tuple[ContactFacts, ...]
 ) -> tuple[tuple[VehicleFacts, ...], tuple[ContactFacts, ...]]:
-    """The subject's own contact before those of others: only the first one is sure to come about in a scenario.
+    """Moves the subject's own contact to the front: only the first one is sure to happen in a scenario.
 
-    Who stood and was pushed into the subject by another stands until then. Who strikes the side of another and is told
-    to have stood before is under way, which the report does not say.
+    A vehicle that stood and was pushed into the subject stands until then. A vehicle that strikes the side of another
+    and is told to have stood before is under way, which the report does not say.
     """
     mine = next((c for c in contacts if vehicles and vehicles[0].id in (c.striker, c.struck)), None)
     if mine is None or not mine.stated:
@@ -180,12 +169,12 @@ def _subject_first(
     return vehicles, (mine, *(c for c in contacts if c is not mine))
 
 
-def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
-    """The crash that was read (`draft`) and what follows from it. A text that names no vehicle gives none."""
-    vehicles = tuple(_vehicle(v, draft.motions[v.id], settled) for v in draft.who.vehicles)
-    beside = others(draft.blows, draft.who.ids, sum(v.beside for v in draft.who.vehicles))
-    contacts = tuple(ContactFacts(*c) for c in settled.contacts) or _without_vehicle(draft, settled, beside)
-    if draft.who.counted:
+def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions) -> CrashFacts:
+    """The crash that was read (`crash_told`) and what follows from it. A text that names no vehicle gives none."""
+    vehicles = tuple(_vehicle(v, crash.motions[v.id], inferred) for v in crash.roster.vehicles)
+    beside = others(crash.contact_mentions, crash.roster.ids, sum(v.beside for v in crash.roster.vehicles))
+    contacts = tuple(inferred.contacts) or _without_vehicle(crash, inferred, beside)
+    if crash.roster.counted:
         vehicles, contacts = _subject_first(vehicles, contacts)
     return CrashFacts(
         vehicles,
@@ -194,17 +183,17 @@ def crash_of(draft: Draft, settled: Settled, sky: Conditions) -> CrashFacts:
         sky.light,
         sky.weather,
         sky.surface or _SURFACE.get(sky.weather),
-        near_crash=_near(draft) if contacts else None,
-        courses=draft.course.courses,
-        impacts=tuple(read.impact for read in draft.impacts),
-        oriented=bool(settled.stated),
-        unnumbered=draft.who.counted,
+        near_crash=_near(crash) if contacts else None,
+        courses=crash.course.courses,
+        impacts=tuple(read.impact for read in crash.impacts),
+        oriented=bool(inferred.stated),
+        unnumbered=crash.roster.counted,
     )
 
 
-def _near(draft: Draft) -> NearFacts | None:
-    near = draft.near
+def _near(crash: CrashTold) -> NearCrashFacts | None:
+    near = crash.near
     if near is None:
         return None
     evasions = tuple((e.vehicle, e.maneuver) for e in near.evasions)
-    return NearFacts(evasions, near.clearance_m, bool(near.blows))
+    return NearCrashFacts(evasions, near.clearance_m, bool(near.contact_mentions))

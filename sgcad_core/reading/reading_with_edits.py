@@ -1,4 +1,4 @@
-"""A reading with a person's facts in the place of what was read, so that all who consult it go by them.
+"""A reading with a person's facts in place of those read, so that all its users follow them.
 
 Writers by rules, validators and results then follow a person as they follow the text: a heading, a maneuver, a contact
 counts as stated. What no reading holds (lanes of one leg, a start road) is laid over the specs later
@@ -12,10 +12,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from sgcad_core.kinds import kind_of_letter
-from sgcad_core.reading.actors.pedestrians_objects import OtherFacts
-from sgcad_core.reading.contacts.near_crash import NearFacts
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
-from sgcad_core.reading.inference.inference_state import AREAS
+from sgcad_core.reading.actors.people_objects import OtherFacts
+from sgcad_core.reading.contacts.contact_records import AREAS, ContactFacts
+from sgcad_core.reading.contacts.near_crash import NearCrashFacts
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.motion.absolute_headings import turned_vehicle
 from sgcad_core.reading.roads.road_facts import RoadFacts
 from sgcad_core.reading.text.compass import between
@@ -34,7 +34,7 @@ _SKY = ("light", "weather", "surface")
 Given = Mapping[str, Value]
 
 
-def mended(reading: Reading, edits: Sequence[Edit]) -> Reading:
+def with_edits(reading: Reading, edits: Sequence[Edit]) -> Reading:
     """The reading as a person has it; the same one without edits. Never raises: what does not fit is left out."""
     if not effective(edits):
         return reading
@@ -76,7 +76,7 @@ def _of_actor(given: Given, name: str) -> dict[str, Value]:
 
 
 def _cast(crash: CrashFacts, given: Given) -> CrashFacts:
-    """With who was added, without who was taken out."""
+    """The crash with the added actors and without the removed ones."""
     for field, value in given.items():
         group, _, rest = field.partition(".")
         name, _, attribute = rest.partition(".")
@@ -104,7 +104,7 @@ def _without(crash: CrashFacts, name: str) -> CrashFacts:
 
 
 def _with_vehicle(crash: CrashFacts, name: str, fields: Mapping[str, Value]) -> CrashFacts:
-    """One vehicle's edited fields; a heading turns everybody's where all were only relative to one another."""
+    """One vehicle's edited fields; a heading turns all vehicles where all were only relative to one another."""
     known = crash.vehicle(name)
     if known is None or not fields:
         return crash
@@ -150,11 +150,11 @@ def _contacts(crash: CrashFacts, given: Given) -> CrashFacts:
     return replace(crash, contacts=(*met, *beside), near_crash=_near(crash, given, bool(met)), gap=gap)
 
 
-def _near(crash: CrashFacts, given: Given, met: bool) -> NearFacts | None:
+def _near(crash: CrashFacts, given: Given, met: bool) -> NearCrashFacts | None:
     avoided = given.get("near_crash", crash.near_crash is not None)
     if not (avoided and met):
         return None
-    near = crash.near_crash or NearFacts()
+    near = crash.near_crash or NearCrashFacts()
     clearance: Any = given.get("near_crash.clearance_m", near.clearance_m)
     return replace(near, clearance_m=clearance, stated=near.stated or "near_crash" in given)
 

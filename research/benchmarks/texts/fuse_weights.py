@@ -33,7 +33,7 @@ from sgcad_core.config import Config
 from sgcad_core.config import load as load_config
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.second_reader.fuse_gist import decide, terms
-from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, RulesSay, alike, rules_say
+from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, RuleValues, alike, rule_values
 from sgcad_core.records.second_reader import Heard, Opinion, Value, Weights
 
 AT_ONCE = 12
@@ -44,7 +44,7 @@ class Case(NamedTuple):
 
     id: str
     allowed: dict[str, tuple[Value, ...]]
-    rules: RulesSay
+    rules: RuleValues
     heard: dict[str, Heard]
     refused: bool = False
     """Whether the report stays refused whatever the model says: it gives no account of a crash."""
@@ -68,7 +68,7 @@ def ask_all(pool: Path, part: str, config: Config, out: Path, most: int | None =
 def _case(incident: Incident, heard: dict[str, Heard]) -> Case:
     reading = read(incident.text)
     gap = reading.crash.gap
-    return Case(incident.id, codes(incident.truth), rules_say(reading), heard, bool(gap and not gap.unread))
+    return Case(incident.id, codes(incident.truth), rule_values(reading), heard, bool(gap and not gap.unread))
 
 
 def codes(truth: Any) -> dict[str, tuple[Value, ...]]:

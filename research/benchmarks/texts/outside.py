@@ -37,8 +37,7 @@ from sgcad_core.asking.second_opinion import load_weights
 from sgcad_core.errors import ConfigError
 from sgcad_core.reading.second_reader.field_claims import KINDS, Claim, kind_of, rules_claim
 from sgcad_core.reading.second_reader.fuse_gist import FILLS, model_right, terms
-from sgcad_core.reading.second_reader.fuse_whole import agree, decided, same
-from sgcad_core.reading.second_reader.fuse_whole import whole as fused
+from sgcad_core.reading.second_reader.fuse_whole import agree, decided, fused_with_answer, same
 from sgcad_core.records.second_reader import DRAWN as OF_DRAWN
 from sgcad_core.records.second_reader import WHOLE, Opinion, Weights
 
@@ -104,7 +103,7 @@ def table(some: Sequence[Case], weights: Mapping[str, Mapping[str, Weights]]) ->
     for case in some:
         rules, model = case.claims
         opinion = Opinion(weights=weights[case.id], answered=case.answered, takes=FILLS)
-        both = fused(case.reading, opinion)
+        both = fused_with_answer(case.reading, opinion)
         after = rules_claim(both)
         for key, want in case.truth.items():
             three = tuple(right(key, c[key].value, want.value) if key in c else False for c in (rules, model, after))

@@ -23,7 +23,7 @@ from sgcad_core.asking.second_opinion import whole
 from sgcad_core.case.records import CrashReport, Diagram
 from sgcad_core.config import load as load_config
 from sgcad_core.reading.reading import Reading, read
-from sgcad_core.reading.second_reader.answered_claims import model_claims
+from sgcad_core.reading.second_reader.answered_values import model_claims
 from sgcad_core.reading.second_reader.field_claims import Claims, rules_claim
 from sgcad_core.reading.text.compass import COMPASS
 from sgcad_core.records.second_reader import Answered

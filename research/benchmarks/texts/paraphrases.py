@@ -20,7 +20,7 @@ from typing import Any
 import yaml
 
 from research.rows.coded_incidents import by_hash
-from sgcad_core.reading.crash_facts import ContactFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.reading import Reading, read
 
 FOLDER = Path(__file__).resolve().parents[3] / "tests" / "sgcad_core" / "reading"

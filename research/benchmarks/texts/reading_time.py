@@ -13,7 +13,7 @@ import sys
 import time
 from collections.abc import Sequence
 
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 
 PROSE = (
     "V1, a 2001 Ford Focus, was traveling northbound on a two-lane, two-way road, approaching an intersection. "
@@ -53,7 +53,7 @@ def text_of(kind: str, size: int) -> str:
 def seconds(text: str) -> float:
     """Processor seconds of one reading: another program on the machine does not count."""
     began = time.process_time()
-    road_facts(text)
+    read(text)
     return time.process_time() - began
 
 

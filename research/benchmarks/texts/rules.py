@@ -24,7 +24,7 @@ from research.training.evaluate import Answer, fields, source, tally
 from sgcad_core.errors import Refused
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
 from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.records.specs import Compass
 from sgcad_core.roads.layout import COMPASS, road_spec
 
@@ -48,7 +48,7 @@ def report_of(seed: int, held_out: bool) -> Report:
 
 def answer_of(report: Report) -> Answer:
     """The rules' reading of a report in the form of the model's answers; no actors and no contacts if refused."""
-    facts = road_facts(report.narrative)
+    facts = read(report.narrative).roads
     layout = layout_of_facts(facts, DEFAULTS)
     try:
         behavior = behavior_of_facts(facts.crash, road_spec(layout)).model_dump(mode="json")

@@ -1,1 +1,1 @@
-"""Who is in a report: vehicles, pedestrians, cyclists, drivers, and the words that refer to them."""
+"""Vehicles, pedestrians, cyclists and drivers of a report, and the words that refer to them."""

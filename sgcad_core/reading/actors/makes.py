@@ -48,11 +48,6 @@ def kind_of(words: str, model: str | None) -> tuple[ActorKind, bool]:
     return known or _USUAL, False
 
 
-def is_model(name: str) -> bool:
-    """Whether a name, lower case, is that of a known model by itself."""
-    return any(name in models for models in _MODEL_KIND.values())
-
-
 def is_animal(words: str) -> bool:
     """Whether a description is of an animal."""
     animals = (word for word, kind in ROAD_USERS.items() if kind == ANIMAL)

@@ -1,9 +1,9 @@
-"""Who is who in a report that numbers nobody: every phrase of somebody becomes the number of one actor.
+"""Numbers for the actors of a report that has none: every noun phrase of an actor becomes that actor's number.
 
 "The test vehicle was stopped when a white van hit it. The van left." becomes "V1 was stopped when a white van (V2) hit
-it. V2 left.", so that everything behind works on numbers. The subject of the report is V1, the others follow in the
-order in which they are named; a text that has any number stays as it is. People and animals count here too:
-`Roster.called` tells their own letters. Knows what phrases mean, not what anybody does.
+it. V2 left.", so that all later stages work on numbers. The subject of the report is V1, the others follow in the order
+in which they are named; a text that has any number stays as it is. People and animals count here, too: `Roster.called`
+gives their own letters. Knows what phrases mean, no motion.
 """
 
 from __future__ import annotations
@@ -11,42 +11,43 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from sgcad_core.reading.actors.makes import BODY_WORDS, is_ridden, on_foot
-from sgcad_core.reading.actors.unnumbered_actors import TRUCK_PARTS, Actor, Cast, Phrase
+from sgcad_core.reading.actors.makes import BODY_WORDS, is_ridden, no_vehicle, on_foot
+from sgcad_core.reading.actors.unnumbered_actors import TRUCK_PARTS, Actor, NamedActors, Phrase
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.text.traced_text import Traced, joined
+from sgcad_core.reading.text.traced_text import TracedText, joined
 
 _PHRASE = rule("references.phrase")
 _OWNERS = ("his", "her", "their")
-"""Of somebody's own vehicle; it is named so where no vehicle was named before: "a woman was hurt when her car ..."."""
+"""Determiners of a person's own vehicle, which is named so where no vehicle was named before: "a woman was hurt when
+her car ..."."""
 _NEAR = 40
 """Characters before a phrase in which a word may say that it is of a stranger."""
 
 
-def numbers_somebody(text: str) -> bool:
-    """Whether a normalized report numbers anybody."""
+def has_actor_numbers(text: str) -> bool:
+    """Whether a normalized report numbers any actor."""
     return bool(rule("common.vehicle").search(text))
 
 
-def number_actors(text: Traced) -> Traced:
-    """The normalized text with everybody named by number; unchanged if there is any number."""
-    if numbers_somebody(text.text):
+def number_actors(text: TracedText) -> TracedText:
+    """The normalized text with a number for every actor; unchanged if there is any number."""
+    if has_actor_numbers(text.text):
         return text
-    automated = _automated(text.text)
+    automated = any(m["automated"] for m in _PHRASE.finditer(text.text))
     for name in _companies(text.text):
         text = text.sub(rule("references.short_name").given(name=re.escape(name)), rf"\1 {name} AV")
-    cast = Cast([Actor(1, "vehicle", set(), subject=True)] if automated else [], automated)
+    cast = NamedActors([Actor(1, "vehicle", set(), subject=True)] if automated else [], automated)
     return numbered(text, Numbering(cast))
 
 
-def numbered(text: Traced, numbering: Numbering) -> Traced:
-    """The text with a number for everybody whom the numbering takes, block by block."""
+def numbered(text: TracedText, numbering: Numbering) -> TracedText:
+    """The text with a number for every actor that the numbering accepts, block by block."""
     blocks = [_numbered(block, numbering) for block in text.split_at("\n\n")]
     return joined(blocks, "\n\n")
 
 
-def _numbered(block: Traced, numbering: Numbering) -> Traced:
-    pieces: list[Traced] = []
+def _numbered(block: TracedText, numbering: Numbering) -> TracedText:
+    pieces: list[TracedText] = []
     at = 0
     for end in [m.end() for m in rule("text.end").finditer(block.text)] + [len(block.text)]:
         piece, at = block.cut(at, end), end
@@ -56,13 +57,8 @@ def _numbered(block: Traced, numbering: Numbering) -> Traced:
     return joined(pieces)
 
 
-def _automated(text: str) -> bool:
-    """Whether a report says of a vehicle that it is the automated one, or its own."""
-    return any(m["automated"] for m in _PHRASE.finditer(text))
-
-
 def _companies(text: str) -> list[str]:
-    """Companies by whose names a report calls the automated vehicle: "the Acme AV"."""
+    """Company names by which a report calls the automated vehicle: "the Acme AV"."""
     called = (rule("references.branded").match(m["automated"]) for m in _PHRASE.finditer(text) if m["automated"])
     return list(dict.fromkeys(name.group().strip() for name in called if name))
 
@@ -71,22 +67,22 @@ def _companies(text: str) -> list[str]:
 class Numbering:
     """Fills in numbers, phrase by phrase in the order of the text."""
 
-    cast: Cast
+    cast: NamedActors
     announcing: bool = False
     at: int = 0
     last: tuple[re.Match[str], Actor] | None = None
-    """The phrase before, and whom it means."""
+    """The phrase before, and its actor."""
 
     @property
     def alone(self) -> bool:
-        """Whether nobody but the subject was named so far."""
+        """Whether only the subject was named so far."""
         return all(actor.subject for actor in self.cast.actors)
 
     def fill(self, match: re.Match[str]) -> str:
-        """What stands for a phrase: the number alone, or behind the words that first describe somebody."""
+        """The replacement of a phrase: the number, at first behind the words that describe the actor."""
         phrase = Phrase(match)
         self.at += 1
-        if self.is_nobody(phrase):
+        if self.is_no_actor(phrase):
             return match.group()
         if match["attendant"]:
             return f"{'The' if match.group()[0].isupper() else 'the'} driver of V1"
@@ -108,7 +104,8 @@ class Numbering:
         actor.part = actor.part or phrase.part
         return self._written(phrase, actor, known is None)
 
-    def is_nobody(self, phrase: Phrase) -> bool:
+    def is_no_actor(self, phrase: Phrase) -> bool:
+        """Whether a phrase names no single actor that gets a number."""
         match = phrase.match
         before = match.string[max(0, match.start() - _NEAR) : match.start()]
         behind = rule("references.part").match(match.string, match.end())
@@ -127,7 +124,8 @@ class Numbering:
         return bool(rule("references.stranger").search(before)) or bool(ridden and self._has(phrase.kind))
 
     def _described(self, match: re.Match[str]) -> Actor | None:
-        """Who is only said to be what a phrase says: "the other vehicle was a 2031 van", "the car, a van, ..."."""
+        """The actor before, where a phrase only describes it: "the other vehicle was a 2031 van", "the car, a van,
+        ..."."""
         if self.last is None or self.last[0].string != match.string or (match["det"] or "").lower() not in ("a", "an"):
             return None
         between = match.string[self.last[0].end() : match.start()]
@@ -165,4 +163,47 @@ class Numbering:
         return self.introduced(f"{det} {words}", f"(V{actor.number}){phrase.clauses}")
 
     def introduced(self, words: str, number: str) -> str:
+        """The words that first describe an actor, with its number."""
         return f"{words} {number}"
+
+
+def number_cyclists(text: TracedText) -> TracedText:
+    """A text that numbers V1 alone with all cyclists numbered from V2 on; all others stay as they are.
+
+    Of several numbered vehicles the words alone do not tell which one a cyclist met: those texts stay as well.
+    """
+    if {m.group() for m in rule("common.vehicle").finditer(text.text)} != {"V1"}:
+        return text
+    v1 = Actor(1, "vehicle", set(), subject=True)
+    return numbered(text, _Cyclists(NamedActors([v1], automated=True)))
+
+
+class _Cyclists(Numbering):
+    """Numbers cyclists alone, and marks them as numbered here; no phrase of a vehicle means V1 or another actor."""
+
+    def is_no_actor(self, phrase: Phrase) -> bool:
+        """Whether a phrase names no single actor that gets a number."""
+        rides = is_ridden(phrase.kind) and no_vehicle(phrase.kind)
+        return not rides or not phrase.match["user"] or super().is_no_actor(phrase)
+
+    def introduced(self, words: str, number: str) -> str:
+        """The words that first describe an actor, with its number."""
+        return f"{'An' if words[0].isupper() else 'an'} unnumbered {words.partition(' ')[2]} {number}"
+
+
+def number_parked(text: TracedText) -> TracedText:
+    """A numbered text in which the one parked vehicle that is hit and has no number gets the next one."""
+    named = list(rule("references.parked").finditer(text.text))
+    hits = {m.start("who") for m in rule("references.parked_hit").finditer(text.text)}
+    hit = next((m.start() for m in named if m.start() in hits), None)
+    if hit is None or not has_actor_numbers(text.text):
+        return text
+    number = max(int(m.group()[1:]) for m in rule("common.vehicle").finditer(text.text)) + 1
+    return text.sub(rule("references.parked"), lambda m: _parked(m, f"V{number}", m.start() - hit))
+
+
+def _parked(match: re.Match[str], id: str, behind: int) -> str:
+    """The number; where it is hit first (`behind` 0) with the words that describe it; another one stays as it is."""
+    if behind == 0:
+        return f"an unnumbered {match['what']} ({id}), which was parked"
+    return id if behind > 0 and match["det"].lower() == "the" else match.group()

@@ -1,6 +1,6 @@
-"""The ids of actors in what was read: numbers of the text become the ids that people, cyclists and animals have.
+"""Replaces numbers of the text in a reading by the final ids of people, cyclists and animals.
 
-A text that numbers nobody is read with a number for everybody; here V2, a cyclist, becomes B1. Knows no text.
+A text without numbers is read with a number for every actor; here V2, a cyclist, becomes B1. Knows no text.
 """
 
 from __future__ import annotations

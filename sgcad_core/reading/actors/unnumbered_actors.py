@@ -1,4 +1,4 @@
-"""Who was named so far in a report that numbers nobody, and whom a phrase means. Knows no deed."""
+"""Actors named so far in a report without numbers, and the actor that a phrase means. Knows no motion."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PARTS: dict[str, str] = values("beside_part") | {w: _PART_OF[s] for w, s in _STA
 """Words that tell where beside the subject a vehicle is: "the lead car" is ahead of it."""
 _USERS: dict[str, str] = values("road_user")
 _MOST = 8
-"""Actors of a report that numbers nobody; further ones stay as they are written."""
+"""Actors of a report without numbers; further ones stay as they are written."""
 _ANY = ("vehicle", "motorist")
 """Heads that may mean any vehicle."""
 TRUCK_PARTS, _TRUCKS = ("cab", "flatbed", "tractor"), ("truck", "pickup")
@@ -25,7 +25,7 @@ _CARS = ("car", "sedan", "coupe", "hatchback", "passenger car", "passenger vehic
 
 @dataclass
 class Actor:
-    """Somebody who was named: `heads` are the nouns used, `order` which one of its kind it is said to be."""
+    """An actor that was named: `heads` are the nouns used, `order` which one of its kind it is said to be."""
 
     number: int
     kind: str
@@ -51,15 +51,18 @@ class Phrase:
 
     @property
     def definite(self) -> bool:
+        """Whether the phrase names a known actor: "the", "this", a possessive, or no determiner."""
         return (self.match["det"] or "the").lower() in ("the", "this", "its", "his", "her", "their")
 
     @property
     def head(self) -> str:
+        """The noun of the phrase, lower case."""
         word = next(filter(None, (self.match[k] for k in ("automated", "attendant", "user", "body"))), None)
         return (word or self.match.string[self.match.start("make") : self.match.end()]).lower()
 
     @property
     def modifiers(self) -> list[str]:
+        """The words between determiner and noun, lower case."""
         return [word.strip(",").lower() for word in self.match["mods"].split()]
 
     @property
@@ -81,11 +84,11 @@ class Phrase:
         if user:
             return _USERS[user.lower()]
         words = self.match.group().lower()
-        return "vehicle" if self.head.endswith(_ANY) and not _is_car(self.head) else kind_of(words, None)[0]
+        return "vehicle" if self.head.endswith(_ANY) and self.head not in _CARS else kind_of(words, None)[0]
 
     @property
     def branded(self) -> bool:
-        """Whether a company's name says whose it is: "the Acme vehicle"."""
+        """Whether a company's name marks the vehicle: "the Acme vehicle"."""
         return bool(rule("references.branded").match(self.match["mods"]))
 
     @property
@@ -108,22 +111,20 @@ class Phrase:
         return f", {told[0]}{',' if closed else ''}" if told else ""
 
 
-def _is_car(head: str) -> bool:
-    return head in _CARS
-
-
 @dataclass
-class Cast:
-    """Everybody named so far."""
+class NamedActors:
+    """All actors named so far."""
 
     actors: list[Actor] = field(default_factory=list)
     automated: bool = False
     """Whether the subject has words of its own, so that no other phrase means it as long as another actor fits."""
 
     def subject(self) -> Actor | None:
+        """The report's own vehicle, once it is named."""
         return next((a for a in self.actors if a.subject), None)
 
     def add(self, phrase: Phrase, subject: bool, announced: bool) -> Actor | None:
+        """Adds an actor for a phrase; None where the most that are numbered are there."""
         if len(self.actors) == _MOST:
             return None
         actor = Actor(len(self.actors) + 1, phrase.kind, {phrase.head}, phrase.order or 1, subject, announced)
@@ -131,7 +132,7 @@ class Cast:
         return actor
 
     def meant(self, phrase: Phrase) -> Actor | None:
-        """Whom a definite phrase means: the last one that its words fit, best fit first; None: nobody so far."""
+        """The actor of a definite phrase: the last one that its words fit, best fit first; None: none so far."""
         if (subject := self.subject()) and self.automated and self._by_name(phrase) == [subject]:
             return subject
         others = sorted((a for a in self.actors if not (a.subject and self.automated)), key=lambda a: -a.at)
@@ -161,7 +162,7 @@ class Cast:
         return self.automated and large and all(a.subject or no_vehicle(a.kind) for a in self.actors)
 
     def open(self, phrase: Phrase) -> Actor | None:
-        """Whom the opening of the report announced and nobody has told of since, if the words fit."""
+        """The actor that the opening announced and no later sentence named, if the words fit."""
         return next((a for a in self.actors if a.announced and _fits(a, phrase)), None)
 
 

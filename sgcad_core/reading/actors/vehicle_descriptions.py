@@ -8,7 +8,6 @@ _MENTION = rule("vehicles.mention")
 _STOP = rule("vehicles.stop")
 BRACKETED = rule("vehicles.bracketed")
 INTRODUCED = rule("references.introduced")
-_LEAD = rule("vehicles.lead")
 
 
 def descriptions(text: str, vehicle: str) -> list[str]:
@@ -29,13 +28,13 @@ def named_before(text: str, vehicle: str) -> list[str]:
 
 
 def introductions(text: str, vehicle: str) -> list[str]:
-    """The words that first describe an actor of a report that numbers nobody."""
+    """The words that first describe an actor of a report without numbers."""
     return [m.group(1) for m in INTRODUCED.finditer(text) if m.group(2) == vehicle]
 
 
 def _description_end(text: str, start: int) -> int:
     """Where the description that begins at `start` ends; `start` itself if there is none."""
-    lead = _LEAD.match(text, start)
+    lead = rule("vehicles.lead").match(text, start)
     if not lead or _STOP.match(text, lead.end()):
         return start
     at = lead.end()

@@ -1,6 +1,6 @@
-"""Who is in the report: numbered vehicles, their make, model and kind, and every way they are mentioned.
+"""Numbered vehicles, their make, model and kind, and every way they are mentioned.
 
-`roster` reads the descriptions; `Roster.resolve` rewrites a sentence so that each vehicle is just "V<n>":
+`read_roster` reads the descriptions; `Roster.resolve` rewrites a sentence so that each vehicle is just "V<n>":
 descriptions behind a mention go, "the Ford" becomes the number. Knows no motion and no contact.
 """
 
@@ -15,21 +15,16 @@ from sgcad_core.kinds import actor_kind
 from sgcad_core.reading.actors import vehicle_descriptions as phrases
 from sgcad_core.reading.actors.makes import BODY_WORDS, COLORS, MAKES, is_animal, kind_of
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.records.specs import ActorKind
 
 MENTION = rule("vehicles.mention")
-_YEAR = rule("vehicles.whole_year")
-_NO_MODEL = rule("vehicles.no_model")
-
-
-_STOP = rule("vehicles.stop")
 _BESIDE = rule("references.unnumbered")
 """A mark that `number_parked` and `number_cyclists` leave, since no report writes so."""
 
 
 @dataclass(frozen=True)
-class Identity:
+class VehicleDescription:
     """A vehicle as described: words are lower case except make and model; kind falls back to car."""
 
     id: str
@@ -43,7 +38,7 @@ class Identity:
     animal: bool = False
     counted: bool = False
     """Whether it was numbered here, not by the report."""
-    described: tuple[Cue, ...] = field(default=(), compare=False, repr=False)
+    described: tuple[Source, ...] = field(default=(), compare=False, repr=False)
     """Every description of it, in order."""
     beside: bool = False
     """Whether it only stands by the road in a report that numbers the others, and has no number there."""
@@ -53,11 +48,11 @@ class Identity:
 class Roster:
     """Every vehicle of the report by number, and how to find it in a sentence."""
 
-    vehicles: tuple[Identity, ...]
+    vehicles: tuple[VehicleDescription, ...]
     aliases: dict[str, str] = field(default_factory=dict)
     """Lower-case word or phrase -> id, only where it names one vehicle."""
     bystanders: tuple[str, ...] = ()
-    """Numbers of those who are in the text and take no part in the crash."""
+    """Numbers of actors in the text that take no part in the crash."""
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -72,11 +67,11 @@ class Roster:
 
     @property
     def counted(self) -> bool:
-        """Whether the numbers were given here: the report numbers nobody and tells one account in order."""
+        """Whether the numbers were given here: the report has none and tells one account in order."""
         return any(v.counted for v in self.vehicles)
 
     def without(self, bystanders: Iterable[str]) -> Roster:
-        """The roster of those who take part."""
+        """The roster without bystanders."""
         gone = tuple(bystanders)
         stay = tuple(v for v in self.vehicles if v.id not in gone)
         names = {name: id for name, id in self.aliases.items() if id not in gone}
@@ -102,7 +97,7 @@ class Roster:
         text = self._named.sub(self._number, text) if self._named else text
         text = rule("vehicles.number_in_brackets").sub(r" \1", text)
         text = rule("vehicles.repeated_number").sub(self._once, text)
-        text = _OCCUPIED.sub(r"\1 ", phrases.without_descriptions(text))
+        text = rule("vehicles.occupied").sub(r"\1 ", phrases.without_descriptions(text))
         text = text if self.counted or not self._full else self._full.sub(self._by_name, text)
         text = rule("vehicles.repeated_number").sub(self._once, rule("vehicles.number_in_brackets").sub(r" \1", text))
         return rule("common.space").sub(" ", text).strip()
@@ -133,9 +128,6 @@ class Roster:
         return match.group(2) or self.aliases[match.group(1).lower()]
 
 
-_OCCUPIED = rule("vehicles.occupied")
-
-
 def _keep_number(match: re.Match[str], ids: tuple[str, ...], counted: bool) -> str:
     """The number in place of its description; what that tells of its way ("a westbound van (V1)") stays before it."""
     if match.group(2) not in ids:
@@ -146,7 +138,7 @@ def _keep_number(match: re.Match[str], ids: tuple[str, ...], counted: bool) -> s
     return f"{told['way']} {match.group(2)}" if told["way"] else f"{match.group(2)}, which was {told['state'].lower()},"
 
 
-def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
+def read_roster(sentences: Iterable[str], counted: bool = False) -> Roster:
     """The vehicles that normalized sentences number, with what is said of them; `counted`: by us, not by the report."""
     told = list(sentences)
     found = tuple(_identity(vehicle, told, counted) for vehicle in _numbers(told))
@@ -155,17 +147,19 @@ def roster(sentences: Iterable[str], counted: bool = False) -> Roster:
     return Roster(found, _aliases(found))
 
 
-def _marked(identity: Identity) -> Identity:
-    """Numbered here though the report numbers others: somebody on a bicycle, else a parked vehicle."""
+def _marked(identity: VehicleDescription) -> VehicleDescription:
+    """An actor numbered here though the report numbers others: a cyclist, else a parked vehicle."""
     return replace(identity, counted=True) if actor_kind(identity.kind).keeps_right else replace(identity, beside=True)
-
-
-_NO_NUMBER = rule("vehicles.no_number")
 
 
 def _numbers(told: list[str]) -> list[str]:
     """The ids in order, the first one whatever it is; one far beyond the others is a model (Volvo V70), no vehicle."""
-    named = (m for text in told for m in _NO_MODEL.finditer(text) if not _NO_NUMBER.match(text, m.start()))
+    named = (
+        m
+        for text in told
+        for m in rule("vehicles.no_model").finditer(text)
+        if not rule("vehicles.no_number").match(text, m.start())
+    )
     kept: list[int] = []
     for n in sorted({int(m[0][1:]) for m in named if len(m[0]) <= _LONGEST_ID}):
         if n and (not kept or n <= kept[-1] + 2):
@@ -177,35 +171,35 @@ _LONGEST_ID = 3
 """Characters: V1 to V99, as specs have them."""
 
 
-def _identity(vehicle: str, told: list[str], counted: bool) -> Identity:
+def _identity(vehicle: str, told: list[str], counted: bool) -> VehicleDescription:
     found = phrases.introductions if counted else phrases.descriptions
-    described = tuple(Cue(n, d) for n, text in enumerate(told) for d in found(text, vehicle))
-    words = " ".join(cue.words for cue in described)
+    described = tuple(Source(n, d) for n, text in enumerate(told) for d in found(text, vehicle))
+    words = " ".join(source.words for source in described)
     if not counted and not rule("vehicles.make").search(words):
-        described += tuple(Cue(n, d) for n, text in enumerate(told) for d in phrases.named_before(text, vehicle))
+        described += tuple(Source(n, d) for n, text in enumerate(told) for d in phrases.named_before(text, vehicle))
     return _described(vehicle, described, told, counted)
 
 
-def _described(vehicle: str, described: tuple[Cue, ...], told: list[str], counted: bool) -> Identity:
-    words = " ".join(cue.words for cue in described)
+def _described(vehicle: str, described: tuple[Source, ...], told: list[str], counted: bool) -> VehicleDescription:
+    words = " ".join(source.words for source in described)
     year = rule("vehicles.year").search(words)
     make = rule("vehicles.make").search(words)
     color = rule("vehicles.color").search(words)
     model = _model(words, make.end()) if make else _model_alone(words)
     kind, stated = kind_of(words, model)
     trailer = bool(rule("vehicles.trailer").search(words)) or _tows(vehicle, told)
-    return Identity(
+    return VehicleDescription(
         vehicle, int(year.group()) if year else None, MAKES[make.group().lower()] if make else None, model,
         color.group().lower() if color else None, kind, stated, trailer, is_animal(words), counted, described,
     )  # fmt: skip
 
 
-def _in_full(found: tuple[Identity, ...], told: list[str]) -> tuple[Identity, ...]:
+def _in_full(found: tuple[VehicleDescription, ...], told: list[str]) -> tuple[VehicleDescription, ...]:
     """Identities of which the report tells make and model elsewhere: "a Kia Rio stopped", then "the Rio is V2"."""
-    full: dict[str, Cue] = {}
+    full: dict[str, Source] = {}
     for n, text in enumerate(told):
         for m in rule("vehicles.make_and_model").finditer(text):
-            full.setdefault(m.group("name").lower(), Cue(n, m[0]))
+            full.setdefault(m.group("name").lower(), Source(n, m[0]))
     known = {f"{v.make} {v.model}".lower() for v in found if v.make and v.model}
     found = tuple(_completed(v, [full[name] for name in full if name not in known], told) for v in found)
     known = {f"{v.make} {v.model}".lower() for v in found if v.make and v.model}
@@ -216,18 +210,18 @@ def _in_full(found: tuple[Identity, ...], told: list[str]) -> tuple[Identity, ..
     return found
 
 
-def _completed(v: Identity, full: list[Cue], told: list[str]) -> Identity:
-    words = " ".join(cue.words for cue in v.described).lower()
+def _completed(v: VehicleDescription, full: list[Source], told: list[str]) -> VehicleDescription:
+    words = " ".join(source.words for source in v.described).lower()
     name = rule("vehicles.make").search(words) or rule("vehicles.model").search(words)
     if (v.make and v.model) or not name:
         return v
-    same = [cue for cue in full if rule("makes.whole_word").given(word=name[0]).search(cue.words.lower())]
+    same = [source for source in full if rule("makes.whole_word").given(word=name[0]).search(source.words.lower())]
     return _described(v.id, (same[0], *v.described), told, False) if len(same) == 1 else v
 
 
-def _fits(v: Identity, cue: Cue) -> bool:
-    """Whether somebody may be of that make and model: who has a body word has one of its kind."""
-    return not v.kind_stated or kind_of(cue.words, None)[0] == v.kind
+def _fits(v: VehicleDescription, source: Source) -> bool:
+    """Whether a vehicle may be of that make and model: a body word allows its own kind only."""
+    return not v.kind_stated or kind_of(source.words, None)[0] == v.kind
 
 
 def _model_alone(words: str) -> str | None:
@@ -239,7 +233,12 @@ def _model(words: str, start: int) -> str | None:
     """The one or two words behind the make that are neither body nor verb."""
     found: list[str] = []
     for word in rule("vehicles.word").findall(words[start:])[:3]:
-        if word in ",;()" or _STOP.fullmatch(word) or word.lower() in BODY_WORDS or _YEAR.fullmatch(word):
+        if (
+            word in ",;()"
+            or rule("vehicles.stop").fullmatch(word)
+            or word.lower() in BODY_WORDS
+            or rule("vehicles.whole_year").fullmatch(word)
+        ):
             break
         bare = word.rstrip(".,")
         if rule("vehicles.doors").match(word) or word.lower() in COLORS or bare.lower() in MAKES or bare in found:
@@ -263,7 +262,7 @@ def _tow_owner(text: str) -> str | None:
 
 
 # ------------------------------------------------------------------ names
-def _aliases(vehicles: tuple[Identity, ...]) -> dict[str, str]:
+def _aliases(vehicles: tuple[VehicleDescription, ...]) -> dict[str, str]:
     """Words that name exactly one vehicle: make, model, first word of the model, kind of vehicle."""
     claims: dict[str, set[str]] = {}
     for v in vehicles:
@@ -272,15 +271,15 @@ def _aliases(vehicles: tuple[Identity, ...]) -> dict[str, str]:
     return {name: next(iter(ids)) for name, ids in claims.items() if len(ids) == 1}
 
 
-def _full_name(v: Identity) -> str | None:
+def _full_name(v: VehicleDescription) -> str | None:
     """Its model, else its make with a body word, lower case."""
     if v.model or not v.make:
         return v.model.lower() if v.model else None
-    found = rule("vehicles.make_and_model").search(" ".join(cue.words for cue in v.described))
+    found = rule("vehicles.make_and_model").search(" ".join(source.words for source in v.described))
     return found[0].lower() if found and found[0] != found["name"] else None
 
 
-def _names(v: Identity) -> set[str]:
+def _names(v: VehicleDescription) -> set[str]:
     names: set[str] = set()
     if v.make:
         names |= {word for word, make in MAKES.items() if make == v.make}

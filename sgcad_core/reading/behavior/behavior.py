@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from sgcad_core.errors import Refused
 from sgcad_core.kinds import RAMP, actor_kind
+from sgcad_core.reading.behavior.added_objects import in_gore, with_roadside
 from sgcad_core.reading.behavior.exit_assignment import Placed, assign, square_rad
-from sgcad_core.reading.behavior.gore_actors import in_gore
 from sgcad_core.reading.behavior.lane_choice import lane_of
-from sgcad_core.reading.behavior.roadside_objects import with_roadside
-from sgcad_core.reading.contacts.near_crash import NearFacts
-from sgcad_core.reading.crash_facts import FROM_STOP_MPH, ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts
+from sgcad_core.reading.contacts.near_crash import NearCrashFacts
+from sgcad_core.reading.crash_facts import FROM_STOP_MPH, CrashFacts, VehicleFacts
 from sgcad_core.reading.layout.road_ways import Way
 from sgcad_core.records.specs import (  # fmt: skip
     Actor,
@@ -48,28 +48,28 @@ def behavior_of_facts(facts: CrashFacts, spec: RoadSpec) -> BehaviorSpec:
     near = _near_crash(facts, contacts)
     actors = in_gore(actors, [_contact(c) for c in contacts], facts.gore, spec)
     met = [] if near else [_contact(c) for c in contacts[:_MOST_CONTACTS]]
-    cast, blows = with_roadside(actors, met, facts, (_MOST_ACTORS, _MOST_CONTACTS))
+    everyone, joined = with_roadside(actors, met, facts, (_MOST_ACTORS, _MOST_CONTACTS))
     return BehaviorSpec(
-        actors=cast, contacts=blows,
+        actors=everyone, contacts=joined,
         light=facts.light, weather=facts.weather, surface=facts.surface, near_crash=near,
     )  # fmt: skip
 
 
 def _near_crash(facts: CrashFacts, contacts: list[ContactFacts]) -> NearCrash | None:
-    """Of a report in which nobody touches: the contact that was avoided, and how."""
+    """The avoided contact of a near crash, and the evasions; None of a report that tells a contact."""
     near = facts.near_crash
     return None if near is None or not contacts else near_crash_of(near, _contact(contacts[0]))
 
 
 def as_read(behavior: BehaviorSpec, facts: CrashFacts) -> BehaviorSpec:
-    """An answered behavior whose first contact did not come about, where the text tells a near crash; else as it is."""
+    """An answered behavior with its first contact as avoided, where the text tells a near crash; else unchanged."""
     near = facts.near_crash
     if near is None or not near.stated or not behavior.contacts:
         return behavior
     return behavior.model_copy(update={"contacts": (), "near_crash": near_crash_of(near, behavior.contacts[0])})
 
 
-def near_crash_of(near: NearFacts, conflict: Contact) -> NearCrash:
+def near_crash_of(near: NearCrashFacts, conflict: Contact) -> NearCrash:
     """A told near crash on a conflict."""
     pair = (conflict.striker, conflict.struck)
     evasions = tuple(Evasion(actor=who, maneuver=how) for who, how in near.evasions if who in pair)
@@ -87,7 +87,7 @@ def _actor(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> Act
 
 
 def _maneuver(v: VehicleFacts, way: Way) -> Maneuver:
-    """As told; from a ramp one merges; who is parked along an aisle with stalls stands in it."""
+    """As told; a lane change from a ramp is a merge; a vehicle parked along an aisle with stalls is stopped in it."""
     if way.road.kind == RAMP and v.maneuver in _SHIFTS:
         return "merge"
     along = is_aisle(way.road) and v.heading_stated and not square_rad(v, way)
@@ -95,7 +95,7 @@ def _maneuver(v: VehicleFacts, way: Way) -> Maneuver:
 
 
 def _speed_mph(v: VehicleFacts) -> int | None:
-    """As told; who starts from a stop is slow at the contact; else the planner's choice."""
+    """As told; slow for a vehicle that starts from a stop; else None, the planner's choice."""
     if v.standing:
         return None
     return v.speed_mph or (FROM_STOP_MPH if v.from_stop else None)

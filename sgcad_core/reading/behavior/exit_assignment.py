@@ -50,7 +50,7 @@ class _Assignment:
         self.options = {v.id: self._options(v) for v in facts.vehicles}
 
     def run(self) -> dict[str, Placed]:
-        """The first contact's pair together, everybody else beside them."""
+        """Places the first contact's pair together, then every other vehicle beside them."""
         first = self._first_pair()
         placed: dict[str, Placed] = {}
         if first:
@@ -86,13 +86,16 @@ class _Assignment:
         return (2.0 if v.heading_stated else 0.8) * off / _QUARTER
 
     def _travel_rad(self, v: VehicleFacts, way: Way) -> float:
-        """Where a vehicle goes on a way: who backs across a junction goes tail first, away from where it faces; where
-        none is, it faces along its way and rolls back in it. Stalls have a rule of their own."""
+        """The travel heading of a vehicle on a way.
+
+        A vehicle that backs across a junction moves tail first, away from its facing; without a junction it faces along
+        its way and rolls back in it. Stalls have a rule of their own.
+        """
         tail_first = goes_tail_first(v) and not is_aisle(way.road) and bool(exits(way, self.ways))
         return angle_of(v.heading or "N") + (math.pi if tail_first else 0.0)
 
     def _kind_cost(self, v: VehicleFacts, way: Way) -> float:
-        """Driveways are for those who come from one; ramps likewise."""
+        """Cost of a driveway for a vehicle that comes from none, and of a street for one that does; ramps likewise."""
         from_access, from_ramp = v.origin in DRIVES, v.origin == RAMP
         cost = 0.0
         if (way.road.kind == DRIVEWAY) != from_access:
@@ -102,7 +105,7 @@ class _Assignment:
         return cost
 
     def _flow_rad(self, way: Way) -> float:
-        """Where a way heads; who is on a ramp is said to head as the road does that it joins."""
+        """Heading of a way; reports give a vehicle on a ramp the heading of the road that it joins."""
         onward = exits(way, self.ways) if way.road.kind == RAMP else ()
         return min(onward, key=lambda w: abs(turn_of(way, w))).heading_rad if onward else way.heading_rad
 

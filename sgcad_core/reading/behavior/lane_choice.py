@@ -28,7 +28,7 @@ def lane_of(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> in
 
 
 def _stated_lane(v: VehicleFacts, count: int, turns: tuple[Turn, ...]) -> int | None:
-    """As told; "the right lane" of who does not turn right is the rightmost through lane, likewise the left one."""
+    """As told; "the right lane" without a right turn is the rightmost through lane, likewise on the left."""
     if v.lane:
         return min(v.lane, count) if v.lane > 0 else max(1, count + 1 + v.lane)
     straight = "turn" not in v.maneuver and v.meant is None
@@ -57,7 +57,7 @@ def _by_turn(v: VehicleFacts, count: int, turns: tuple[Turn, ...]) -> int | None
         return _last(turns, _LEFT) or count
     if v.maneuver in ("turn_right", "lane_change_left", "parked"):
         return _first(turns, _RIGHT) or 1 if v.maneuver == "turn_right" else 1
-    return None if _all_through(turns) else _first(turns, _THROUGH)
+    return None if all(t in _THROUGH for t in turns) else _first(turns, _THROUGH)
 
 
 def _waits_to_turn(v: VehicleFacts) -> bool:
@@ -70,7 +70,3 @@ def _first(turns: tuple[Turn, ...], wanted: tuple[Turn, ...]) -> int | None:
 
 def _last(turns: tuple[Turn, ...], wanted: tuple[Turn, ...]) -> int | None:
     return next((i for i, t in reversed(list(enumerate(turns, 1))) if t in wanted), None)
-
-
-def _all_through(turns: tuple[Turn, ...]) -> bool:
-    return all(t in _THROUGH for t in turns)

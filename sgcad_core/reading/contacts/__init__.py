@@ -1,1 +1,1 @@
-"""Who struck whom, where and in which order; near crashes; what happened after the first contact."""
+"""Contacts: striker, struck, areas and order; near crashes; the course after the first contact."""

@@ -7,98 +7,108 @@ Also the area pairs that stand behind a verb ("front to left side"). Reads sente
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from dataclasses import replace
 
-from sgcad_core.reading.contacts import contact_words as says
+from sgcad_core.reading.actors.vehicles import MENTION, Roster
+from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.text.area_phrases import Zone, area_of
-
-
-class Touch(NamedTuple):
-    """Two vehicles and the areas that met; `by` the other: whether the first one was struck."""
-
-    first: str
-    second: str
-    first_area: Zone | None
-    second_area: Zone | None
-    words: str
-    by: bool = False
-
+from sgcad_core.reading.motion.clauses import Statement
+from sgcad_core.reading.text.area_phrases import Zone, area_if_told, area_of
 
 _PUSHES = (("v1", "v2", "a2"), ("v3", "v4", "a4"), ("v5", "v6", "a6"))
-"""Groups of who is pushed, into whom, and where."""
-_NAMED = rule("contact_nouns.named")
-_TOOK = rule("contact_nouns.took")
-_RECEIVED = rule("contact_nouns.received")
-_CAUSED = rule("contact_nouns.caused")
-_TOGETHER = rule("contact_nouns.together")
+"""Groups of a pushed vehicle, the vehicle it is pushed into, and the area."""
 _NOTHING = rule("contact_nouns.nothing")
 
 
-def touches(text: str) -> Iterator[Touch]:
+def touches(statement: Statement, text: str) -> Iterator[ContactMention]:
     """Every contact that nouns tell in a sentence, in the order of their certainty."""
-    told = (says.BETWEEN, says.BOTH_PARTS, _NAMED, _CAUSED)
-    for m in (m for pattern in told for m in pattern.finditer(text)):
+    pairs = (
+        rule("contact_words.between"),
+        rule("contact_words.both_parts"),
+        rule("contact_nouns.named"),
+        rule("contact_nouns.caused"),
+    )
+    for m in (m for pattern in pairs for m in pattern.finditer(text)):
         if not _NOTHING.search(text[: m.start()]):
             front = "front" if rule("contact_nouns.head_on").match(text[m.end() :]) else None
-            yield Touch(m["v1"], m["v2"], _maybe(m["a1"]) or front, _maybe(m["a2"]) or front, "between")
+            yield _mention(
+                statement, m["v1"], m["v2"], area_if_told(m["a1"]) or front, area_if_told(m["a2"]) or front, "between"
+            )
     for m in rule("contact_nouns.between_thing").finditer(text):
         if not _NOTHING.search(text[: m.start()]):
-            yield Touch(m["v"] or m["v2"], m["object"].lower(), _maybe(m["area"] or m["area2"]), None, "between")
-    for m in says.PUSHED.finditer(text):
+            yield _mention(
+                statement,
+                m["v"] or m["v2"],
+                m["object"].lower(),
+                area_if_told(m["area"] or m["area2"]),
+                None,
+                "between",
+            )
+    for m in rule("contact_words.pushed").finditer(text):
         a, b, area = next((m[v], m[w], m[z]) for v, w, z in _PUSHES if m[v])
-        yield Touch(a, b, "front", _maybe(area) or "back", "pushed")
-    for m in _RECEIVED.finditer(text):
-        yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "received", True)
-    for m in _TOOK.finditer(text):
-        yield Touch(
-            m["v1"], m["v2"], _maybe(m["a0"]) or _maybe(m["a1"]) or area_of(m["how"]), _maybe(m["a2"]), "took", True
-        )
+        yield _mention(statement, a, b, "front", area_if_told(area) or "back", "pushed")
+    for m in rule("contact_nouns.received").finditer(text):
+        yield _mention(statement, m["v1"], m["v2"], area_if_told(m["a1"]), area_if_told(m["a2"]), "received", True)
+    for m in rule("contact_nouns.took").finditer(text):
+        area = area_if_told(m["a0"]) or area_if_told(m["a1"]) or area_of(m["how"])
+        yield _mention(statement, m["v1"], m["v2"], area, area_if_told(m["a2"]), "took", True)
 
 
-def together(text: str) -> Iterator[Touch]:
+def together(statement: Statement, text: str) -> Iterator[ContactMention]:
     """ "... came together, the front of V1 to the left side of V2": no verb, so only where no verb tells more."""
-    for m in _TOGETHER.finditer(text):
+    for m in rule("contact_nouns.together").finditer(text):
         if not _NOTHING.search(text[: m.start()]):
-            yield Touch(m["v1"], m["v2"], _maybe(m["a1"]), _maybe(m["a2"]), "together")
+            yield _mention(statement, m["v1"], m["v2"], area_if_told(m["a1"]), area_if_told(m["a2"]), "together")
     for m in rule("contact_nouns.into").finditer(text):
         if not _NOTHING.search(text[: m.start()]):
-            yield Touch(m["v1"], m["v2"], "front" if m["how"] else None, _maybe(m["a2"]), "into")
+            yield _mention(statement, m["v1"], m["v2"], "front" if m["how"] else None, area_if_told(m["a2"]), "into")
 
 
-def involved(text: str) -> Iterator[Touch]:
+def involved(statement: Statement, text: str) -> Iterator[ContactMention]:
     """ "V1 was in a collision involving V2": of use only where nothing tells how."""
     for m in rule("contact_nouns.involved").finditer(text):
-        yield Touch(m["v1"], m["v2"], None, None, "involved")
+        yield _mention(statement, m["v1"], m["v2"], None, None, "involved")
+
+
+def _mention(
+    statement: Statement,
+    first: str,
+    second: str,
+    area: Zone | None,
+    other_area: Zone | None,
+    words: str,
+    by: bool = False,
+) -> ContactMention:
+    """`by` the second one: the first one was struck."""
+    if by:
+        return ContactMention(second, first, other_area, area, statement.number, statement.role, True, words, noun=True)
+    return ContactMention(first, second, area, other_area, statement.number, statement.role, words=words, noun=True)
 
 
 def door_of(actor: str, before: str, scope: str) -> str | None:
-    """The door or mirror that struck `actor`, in words, where a sentence does not say whose: then it is another's."""
+    """The words for a door or mirror that struck `actor`, where a sentence names no owner: it belongs to another
+    vehicle."""
     part = rule("contact.a_part").search(before)
-    struck = says.ACTIVE_OBJECT.match(scope) if part else None
+    struck = rule("contact_words.active_object").match(scope) if part else None
     return part["area"] if part and struck and struck["v"] == actor else None
-
-
-def _maybe(words: str | None) -> Zone | None:
-    return area_of(words) if words else None
 
 
 def paired_areas(scope: str) -> tuple[Zone | None, Zone | None] | None:
     """Both areas of "front to left side" and of "head-on", the subject's first."""
     if rule("contact_nouns.head_on").match(scope):
         return "front", "front"
-    pair = says.PAIRED.search(scope)
+    pair = rule("contact_words.paired").search(scope)
     if not pair or pair.start() > 60 or "with" in pair.group():
         return None
-    return _maybe(pair["a1"]), _maybe(pair["a2"])
+    return area_if_told(pair["a1"]), area_if_told(pair["a2"])
 
 
 def struck_pair(scope: str, area: Zone | None, other_area: Zone | None) -> tuple[Zone | None, Zone | None]:
     """ "V2 was struck by V1, front to left side": the front, where only one is, belongs to the striking vehicle."""
-    against = says.AGAINST.search(scope)
-    by = says.BY.search(scope)
+    against = rule("contact_words.against").search(scope)
+    by = rule("contact_words.by").search(scope)
     if against and by and by["v"] == against["v1"]:
-        return _maybe(against["a2"]), _maybe(against["a1"])
+        return area_if_told(against["a2"]), area_if_told(against["a1"])
     pair = None if against or area or other_area else paired_areas(scope)
     if not pair:
         return area, other_area
@@ -106,14 +116,14 @@ def struck_pair(scope: str, area: Zone | None, other_area: Zone | None) -> tuple
 
 
 def _strikes_first(pair: tuple[Zone | None, Zone | None]) -> bool:
-    """Whether the first of two zones is the front of who strikes."""
+    """Whether the first of two areas is the striker's front."""
     return (pair[0] or "").startswith("front") or not (pair[1] or "").startswith("front")
 
 
 def is_noun(before: str, word: str, behind: str) -> bool:
     """ "the impact", "at impact", "of contact": no verb."""
     nouns = ("impact", "contact", "hit", "impacts", "contacts", "hits", "strike")
-    if word.lower() not in nouns or says.CAUSED.search(before):
+    if word.lower() not in nouns or rule("contact_words.caused").search(before):
         return False
     return bool(rule("contact.noun_before").search(before))
 
@@ -125,3 +135,26 @@ def subject_area(before: str, subject: str) -> Zone | None:
         return area_of(found[-1]["area"])
     own = rule("contact.own_area").search(before) or rule("contact.with_before").search(before)
     return area_of(own["area"]) if own else None
+
+
+def with_striker(mention: ContactMention, text: str) -> ContactMention:
+    """A mutual collision with the striker first, where the sentence names it."""
+    said = rule("contact_nouns.striker").search(text) if mention.mutual or mention.noun else None
+    if not said or said["v"] != mention.other:
+        return mention
+    return replace(
+        mention, actor=mention.other, other=mention.actor, actor_area=mention.other_area, other_area=mention.actor_area
+    )
+
+
+def unnamed_pair(statement: Statement, text: str, roster: Roster) -> list[ContactMention]:
+    """ "Front met front.", where there are but two."""
+    pair = rule("contact_nouns.bare_pair").search(text) if len(roster.ids) == 2 and not MENTION.search(text) else None
+    if not pair or roster.counted:
+        return []
+    (one, other), mine, theirs = roster.ids, area_of(pair["a1"]), area_of(pair["a2"])
+    return [
+        ContactMention(
+            one, other, mine, theirs, statement.number, statement.role, words="bare_pair", mutual=True, noun=True
+        )
+    ]

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from sgcad_core.reading.actors.pedestrians_objects import is_person
-from sgcad_core.reading.contacts.contact_telling import Blow
+from dataclasses import replace
+
+from sgcad_core.reading.actors.people_objects import is_person
+from sgcad_core.reading.contacts.contact_records import AREAS, ContactFacts, ContactMention
 from sgcad_core.reading.inference.inference_state import (
-    AREAS,
     TURN_DEG,
-    Draft,
-    Joined,
-    Settled,
+    CrashInferred,
+    CrashTold,
     apart,
     end_of,
     is_sideswipe,
@@ -23,44 +23,48 @@ _SIDLING = ("lane_change_left", "lane_change_right", "merge", "overtaking")
 _BENT = ("turn_left", "turn_right", "u_turn", *_SIDLING)
 
 
-def join_contacts(draft: Draft, out: Settled, pairs: list[Blow]) -> list[Joined]:
-    if not pairs and draft.who.counted and draft.blows:
-        return []  # the report tells what was touched, and it is no vehicle
-    if not pairs and any(blow.other not in draft.who.ids and is_person(blow.other) for blow in draft.blows):
-        return []  # somebody without a number was hit; the vehicles are not told to have touched
-    if not pairs and len(draft.who.ids) >= 2:
-        a, b = draft.who.ids[:2]
-        if draft.blows and frozenset((a, b)) in draft.missed:
+def infer_contacts(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> list[ContactFacts]:
+    """Contacts of vehicles with all areas; the first two vehicles where none is told and nothing else was struck."""
+    if not pairs and crash.roster.counted and crash.contact_mentions:
+        return []  # the report tells a contact, with no vehicle
+    if not pairs and any(
+        mention.other not in crash.roster.ids and is_person(mention.other) for mention in crash.contact_mentions
+    ):
+        return []  # an actor without a number was hit; no contact of the vehicles is told
+    if not pairs and len(crash.roster.ids) >= 2:
+        a, b = crash.roster.ids[:2]
+        if crash.contact_mentions and frozenset((a, b)) in crash.missed:
             return []  # one of both struck something else
-        return [_join(draft, out, Blow(a, b, None, None, 0, "impact", mutual=True))._replace(told=False)]
-    return [_join(draft, out, blow) for blow in pairs]
+        guess = ContactMention(a, b, None, None, 0, "impact", mutual=True)
+        return [replace(_join(crash, inferred, guess), stated=False)]
+    return [_join(crash, inferred, mention) for mention in pairs]
 
 
-def _join(draft: Draft, out: Settled, blow: Blow) -> Joined:
+def _join(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) -> ContactFacts:
     """Striker first: the one that hits with its front where the other does not, or backs into it."""
-    told = all(zone is not None and "/" not in zone for zone in (blow.actor_area, blow.other_area))
-    a, b = blow.actor, blow.other
-    area_a, area_b = _corners(draft, out, blow)
-    if draft.who.counted and not (area_a and area_b):
-        area_a, area_b = _brushed(out, blow, area_a, area_b)
-    if area_a is None and area_b is None and is_sideswipe(blow):
-        area_a, area_b = _sideswiped(out, a, b)
-    if blow.mutual and area_a is None and area_b is None and _less_of_a_striker(out, a, b):
+    told = all(zone is not None and "/" not in zone for zone in (mention.actor_area, mention.other_area))
+    a, b = mention.actor, mention.other
+    area_a, area_b = _corners(crash, inferred, mention)
+    if crash.roster.counted and not (area_a and area_b):
+        area_a, area_b = _brushed(inferred, mention, area_a, area_b)
+    if area_a is None and area_b is None and is_sideswipe(mention):
+        area_a, area_b = _sideswiped(inferred, a, b)
+    if mention.mutual and area_a is None and area_b is None and _less_of_a_striker(inferred, a, b):
         a, b = b, a
-    if area_a is None and area_b is None and (caught := _caught_up(draft, a, b)):
+    if area_a is None and area_b is None and (caught := _caught_up(crash, a, b)):
         a, b, area_a, area_b = *caught, "front", "back"
-    area_a, area_b = complete_areas(out, a, b, area_a, area_b)
-    leads_b = area_b == "front" and area_a != "front" and not _backs_into(out, a, area_a)
-    if leads_b or (_backs_into(out, b, area_b) and _standing(out, a)):
+    area_a, area_b = complete_areas(inferred, a, b, area_a, area_b)
+    leads_b = area_b == "front" and area_a != "front" and not _backs_into(inferred, a, area_a)
+    if leads_b or (_backs_into(inferred, b, area_b) and _standing(inferred, a)):
         a, b, area_a, area_b = b, a, area_b, area_a
-    may = {blow.actor: _allowed(blow.actor_area), blow.other: _allowed(blow.other_area)}
-    return Joined(a, b, area_a, area_b, told, True, may[a], may[b])
+    may = {mention.actor: _allowed(mention.actor_area), mention.other: _allowed(mention.other_area)}
+    return ContactFacts(a, b, area_a, area_b, told, True, may[a], may[b])
 
 
-def _caught_up(draft: Draft, a: str, b: str) -> tuple[str, str] | None:
+def _caught_up(crash: CrashTold, a: str, b: str) -> tuple[str, str] | None:
     """Striker and struck where the codes say that one came from behind with more speed."""
     for struck, striker in ((a, b), (b, a)):
-        if draft.motions[struck].did("code:hit_from_behind"):
+        if crash.motions[struck].has_cue("code:hit_from_behind"):
             return striker, struck
     return None
 
@@ -70,83 +74,98 @@ def _allowed(zone: Zone | None) -> tuple[Area, ...]:
     return tuple(area for area in AREAS if area in zone.split("/")) if zone else AREAS
 
 
-def _less_of_a_striker(out: Settled, a: str, b: str) -> bool:
+def _less_of_a_striker(inferred: CrashInferred, a: str, b: str) -> bool:
     """Whether b rather than a hits with its front: a turns or stands and b goes straight; else the higher number."""
-    bent_a, bent_b = (out.maneuvers[v] in _BENT or _standing(out, v) for v in (a, b))
+    bent_a, bent_b = (inferred.maneuvers[v] in _BENT or _standing(inferred, v) for v in (a, b))
     return (bent_a and not bent_b) or (bent_a == bent_b and int(a[1:]) > int(b[1:]))
 
 
-def _brushed(out: Settled, blow: Blow, area_a: Area | None, area_b: Area | None) -> tuple[Area | None, Area | None]:
-    """Who goes past another touches a told corner or flank of it with the flank that faces it."""
-    oncoming = apart(between(out.headings.get(blow.actor, "N"), out.headings.get(blow.other, "N")), 180) <= 45
-    for mine, me, zone in ((area_a, blow.actor, blow.other_area), (area_b, blow.other, blow.actor_area)):
+def _brushed(
+    inferred: CrashInferred, mention: ContactMention, area_a: Area | None, area_b: Area | None
+) -> tuple[Area | None, Area | None]:
+    """Gives an overtaking vehicle the flank that faces the told corner or flank of the other one."""
+    oncoming = (
+        apart(between(inferred.headings.get(mention.actor, "N"), inferred.headings.get(mention.other, "N")), 180) <= 45
+    )
+    for mine, me, zone in ((area_a, mention.actor, mention.other_area), (area_b, mention.other, mention.actor_area)):
         flank = next((side for side in (zone or "").split("/") if side in OPPOSITE_HAND), None)
-        if mine is None and flank and out.maneuvers[me] == "overtaking":
+        if mine is None and flank and inferred.maneuvers[me] == "overtaking":
             touching: Area = flank if oncoming else OPPOSITE_HAND[flank]  # type: ignore[assignment]
-            return (touching, area_b) if me == blow.actor else (area_a, touching)
+            return (touching, area_b) if me == mention.actor else (area_a, touching)
     return area_a, area_b
 
 
-def _sideswiped(out: Settled, a: str, b: str) -> tuple[Area, Area]:
+def _sideswiped(inferred: CrashInferred, a: str, b: str) -> tuple[Area, Area]:
     """Flank to flank: left to left of oncoming vehicles, else by the lane change, else a on the left."""
-    if apart(between(out.headings[a], out.headings[b]), 180) <= 45:
+    if apart(between(inferred.headings[a], inferred.headings[b]), 180) <= 45:
         return "left", "left"
-    a_goes_left = out.maneuvers[a] == "lane_change_left" or out.maneuvers[b] == "lane_change_right"
+    a_goes_left = inferred.maneuvers[a] == "lane_change_left" or inferred.maneuvers[b] == "lane_change_right"
     return ("left", "right") if a_goes_left else ("right", "left")
 
 
-def _corners(draft: Draft, out: Settled, blow: Blow) -> tuple[Area | None, Area | None]:
+def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) -> tuple[Area | None, Area | None]:
     """Each corner as its end or its flank: the flank where the paths cross and the other hits with its front."""
-    turn = between(out.headings[blow.actor], out.headings[blow.other])
-    pair = (blow.actor, blow.other)
-    skidding = any(draft.motions[v].did("lost_control", 3) for v in pair) and turn == 0
-    bent = skidding or turn % 180 != 0 or any(out.maneuvers[v] in _BENT for v in pair)
-    zones = {blow.actor: blow.actor_area, blow.other: blow.other_area}
+    turn = between(inferred.headings[mention.actor], inferred.headings[mention.other])
+    pair = (mention.actor, mention.other)
+    skidding = any(crash.motions[v].has_cue("lost_control", 3) for v in pair) and turn == 0
+    bent = skidding or turn % 180 != 0 or any(inferred.maneuvers[v] in _BENT for v in pair)
+    zones = {mention.actor: mention.actor_area, mention.other: mention.other_area}
     areas: dict[str, Area | None] = {}
-    for me, you in ((blow.actor, blow.other), (blow.other, blow.actor)):
+    for me, you in ((mention.actor, mention.other), (mention.other, mention.actor)):
         mine, yours = zones[me], zones[you]
         flank = (
             bent
             and mine
             and mine.count("/") == 1
             and yours in ("front", None)
-            and out.maneuvers[me] not in ("stopped", "parked")
+            and inferred.maneuvers[me] not in ("stopped", "parked")
         )
         areas[me] = mine.split("/")[1] if flank and mine else end_of(mine)  # type: ignore[assignment]
-    if set(areas.values()) == {"back"} and not any(out.maneuvers[v] == "backing" for v in pair):
+    if set(areas.values()) == {"back"} and not any(inferred.maneuvers[v] == "backing" for v in pair):
         areas = {v: _flank_of(zones[v]) or areas[v] for v in pair}
-    return areas[blow.actor], areas[blow.other]
+    return areas[mention.actor], areas[mention.other]
 
 
 def _flank_of(zone: Zone | None) -> Area | None:
-    """The flank of a corner: two rear corners touch with it where nobody backs, since nobody drives tail first."""
+    """The flank of a corner: two rear corners touch with their flanks where no vehicle backs."""
     return zone.split("/")[1] if zone and zone.count("/") == 1 else None  # type: ignore[return-value]
 
 
-def complete_areas(out: Settled, a: str, b: str, area_a: Area | None, area_b: Area | None) -> tuple[Area, Area]:
+def complete_areas(
+    inferred: CrashInferred, a: str, b: str, area_a: Area | None, area_b: Area | None
+) -> tuple[Area, Area]:
     """Sides that the text leaves open, from headings and maneuvers; a is the grammatical striker."""
     area_a, area_b = (
-        "back" if side is None and out.maneuvers[v] == "backing" else side for v, side in ((a, area_a), (b, area_b))
+        "back" if side is None and inferred.maneuvers[v] == "backing" else side
+        for v, side in ((a, area_a), (b, area_b))
     )
     if area_a and area_b:
         return area_a, area_b
-    turn = between(out.headings.get(a, "N"), out.headings.get(b, "N")) if a in out.headings and b in out.headings else 0
-    at_contact = (turn + TURN_DEG.get(out.maneuvers[b], 0.0) - TURN_DEG.get(out.maneuvers[a], 0.0)) % 360
+    turn = (
+        between(inferred.headings.get(a, "N"), inferred.headings.get(b, "N"))
+        if a in inferred.headings and b in inferred.headings
+        else 0
+    )
+    at_contact = (turn + TURN_DEG.get(inferred.maneuvers[b], 0.0) - TURN_DEG.get(inferred.maneuvers[a], 0.0)) % 360
     if area_a is None and area_b is None:
-        if _standing(out, a) and not _standing(out, b):
+        if _standing(inferred, a) and not _standing(inferred, b):
             return side_hit(-at_contact), "front"
         return "front", side_hit(-at_contact)
     if area_a is None:
-        if _standing(out, a) and not _standing(out, b) and area_b in ("left", "right"):
+        if _standing(inferred, a) and not _standing(inferred, b) and area_b in ("left", "right"):
             return _flank_facing(area_b, turn), area_b
         if (
-            {out.maneuvers[a], out.maneuvers[b]} & set(_SIDLING)
+            {inferred.maneuvers[a], inferred.maneuvers[b]} & set(_SIDLING)
             and area_b in ("left", "right")
             and apart(turn, 0) <= 45
         ):
             return ("right" if area_b == "left" else "left"), area_b
         return ("front", area_b) if area_b != "front" else (side_hit(at_contact), area_b)  # type: ignore[return-value]
-    if {out.maneuvers[a], out.maneuvers[b]} & set(_SIDLING) and area_a in ("left", "right") and apart(turn, 0) <= 45:
+    if (
+        {inferred.maneuvers[a], inferred.maneuvers[b]} & set(_SIDLING)
+        and area_a in ("left", "right")
+        and apart(turn, 0) <= 45
+    ):
         return area_a, "right" if area_a == "left" else "left"
     return (area_a, side_hit(-at_contact)) if area_a == "front" else (area_a, "front")
 
@@ -156,9 +175,9 @@ def _flank_facing(flank: Area, turn: float) -> Area:
     return flank if apart(turn, 180) <= 45 else "right" if flank == "left" else "left"
 
 
-def _backs_into(out: Settled, vehicle: str, area: Area | None) -> bool:
-    return out.maneuvers[vehicle] == "backing" and area == "back"
+def _backs_into(inferred: CrashInferred, vehicle: str, area: Area | None) -> bool:
+    return inferred.maneuvers[vehicle] == "backing" and area == "back"
 
 
-def _standing(out: Settled, vehicle: str) -> bool:
-    return out.maneuvers[vehicle] in ("stopped", "parked")
+def _standing(inferred: CrashInferred, vehicle: str) -> bool:
+    return inferred.maneuvers[vehicle] in ("stopped", "parked")

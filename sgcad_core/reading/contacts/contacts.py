@@ -1,7 +1,7 @@
-"""Who struck whom and where: contacts in the order of the text.
+"""Contacts in the order of the text: striker, struck and areas.
 
-A sentence is first brought to one form ("V1's front" -> "the front of V1"), then every verb of hitting is
-read with its subject, voice and object. Interviews come last: they exchange numbers. Infers no area.
+A sentence is first brought to one form ("V1's front" -> "the front of V1"), then every verb of hitting is read with its
+subject, voice and object. Interviews come last: they exchange numbers. Infers no area.
 """
 
 from __future__ import annotations
@@ -10,11 +10,9 @@ import re
 from collections.abc import Iterable
 from dataclasses import replace
 
+from sgcad_core.reading.actors.people_objects import with_people
 from sgcad_core.reading.actors.vehicles import MENTION, Roster
-from sgcad_core.reading.actors.walkers import with_people
-from sgcad_core.reading.contacts import contact_words as says
 from sgcad_core.reading.contacts.contact_nouns import (
-    Touch,
     door_of,
     involved,
     is_noun,
@@ -23,20 +21,22 @@ from sgcad_core.reading.contacts.contact_nouns import (
     subject_area,
     together,
     touches,
+    unnamed_pair,
+    with_striker,
 )
-from sgcad_core.reading.contacts.contact_telling import Blow
+from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement, subject_starts
 from sgcad_core.reading.text.area_phrases import Zone, area_by, area_if_told, area_of, plain
 from sgcad_core.reading.text.sentence_roles import HIT
 
 
-def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
+def contact_mentions(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
     """Every contact told, in order: the crash's own sentences first, other witnesses behind them."""
-    crash: list[Blow] = []
-    retold: list[Blow] = []
-    told = tuple(told if who.counted else with_people(told))
-    for t in told:
+    crash: list[ContactMention] = []
+    retold: list[ContactMention] = []
+    statements = tuple(statements if roster.counted else with_people(statements))
+    for t in statements:
         if t.role in ("codes", "factors", "police", "health", "formal"):
             continue
         into = (
@@ -44,123 +44,110 @@ def blows(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
             if t.role in ("impact", "approach", "avoidance", "rest", "opening", "road", "conditions", "other")
             else retold
         )
-        into += _sentence(t, who)
-    first = min((b.number for b in crash if b.other in who.ids), default=0)
-    early = [b for b in retold if b.number < first and b.other in who.ids]
+        into += _sentence(t, roster)
+    first = min((b.number for b in crash if b.other in roster.ids), default=0)
+    early = [b for b in retold if b.number < first and b.other in roster.ids]
     late = [b for b in retold if b not in early]
-    return (*early, *crash, *late) or _only_named(told, who)
+    return (*early, *crash, *late) or _only_named(statements, roster)
 
 
-def _only_named(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
-    """Contacts of which a report says no more than who collided with whom."""
-    named = ((t, touch) for t in told for touch in involved(plain(t, who)))
-    found = (Blow(m.first, m.second, None, None, t.number, t.role, words=m.words, mutual=True, noun=True, summary=True)
-             for t, m in named)  # fmt: skip
-    return tuple(b for b in found if {b.actor, b.other} <= set(who.ids) and b.actor != b.other)
+def _only_named(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
+    """Contacts of a report that says only which vehicles collided."""
+    found = (replace(b, mutual=True, summary=True) for t in statements for b in involved(t, plain(t, roster)))
+    return tuple(b for b in found if {b.actor, b.other} <= set(roster.ids) and b.actor != b.other)
 
 
-def _sentence(told: Statement, who: Roster) -> list[Blow]:
-    text = plain(told, who)
-    found: list[Blow] = []
-    starts = subject_starts(told._replace(text=text), who)
+def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
+    text = plain(statement, roster)
+    found: list[ContactMention] = []
+    starts = subject_starts(statement._replace(text=text), roster)
     for m in HIT.finditer(text):
-        if any(p.start() < m.start() <= p.end() for p in says.BOTH_PARTS.finditer(text)):
+        if any(p.start() < m.start() <= p.end() for p in rule("contact_words.both_parts").finditer(text)):
             continue
-        blow = _blow(told, text, m, starts, who)
-        if blow:
-            found.append(blow)
-    found += [_touch(t, told) for t in touches(text)]
-    found = [_with_striker(b, text) for b in found] or _unnamed_pair(told, text, who)
+        mention = _contact_mention(statement, text, m, starts, roster)
+        if mention:
+            found.append(mention)
+    found += touches(statement, text)
+    found = [with_striker(b, text) for b in found] or unnamed_pair(statement, text, roster)
     told_by_verbs = {frozenset((b.actor, b.other)) for b in found}
-    found += [_touch(t, told) for t in together(text) if frozenset((t.first, t.second)) not in told_by_verbs]
-    return [b for b in found if b.actor in who.ids and b.actor != b.other]
+    found += [b for b in together(statement, text) if frozenset((b.actor, b.other)) not in told_by_verbs]
+    return [b for b in found if b.actor in roster.ids and b.actor != b.other]
 
 
-def _with_striker(blow: Blow, text: str) -> Blow:
-    """A collision of both with the striker first, where the sentence tells who struck."""
-    said = rule("contact_nouns.striker").search(text) if blow.mutual or blow.noun else None
-    if not said or said["v"] != blow.other:
-        return blow
-    return replace(blow, actor=blow.other, other=blow.actor, actor_area=blow.other_area, other_area=blow.actor_area)
-
-
-def _unnamed_pair(told: Statement, text: str, who: Roster) -> list[Blow]:
-    """ "Front met front.", where there are but two."""
-    pair = rule("contact_nouns.bare_pair").search(text) if len(who.ids) == 2 and not MENTION.search(text) else None
-    if not pair or who.counted:
-        return []
-    (one, other), mine, theirs = who.ids, area_of(pair["a1"]), area_of(pair["a2"])
-    return [Blow(one, other, mine, theirs, told.number, told.role, words="bare_pair", mutual=True, noun=True)]
-
-
-def _touch(t: Touch, told: Statement) -> Blow:
-    if t.by:
-        return Blow(t.second, t.first, t.second_area, t.first_area, told.number, told.role, True, t.words, noun=True)
-    return Blow(t.first, t.second, t.first_area, t.second_area, told.number, told.role, words=t.words, noun=True)
-
-
-def _blow(
-    told: Statement, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], who: Roster
-) -> Blow | None:
+def _contact_mention(
+    statement: Statement, text: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]], roster: Roster
+) -> ContactMention | None:
     before, behind = text[: m.start()], text[m.end() :]
-    passive = bool(says.PASSIVE.search(before)) and not rule("contact.made_contact").match(m.group())
+    passive = bool(rule("contact_words.passive").search(before)) and not rule("contact.made_contact").match(m.group())
     passive = passive or bool(rule("contact.reduced").match(m.group() + behind))
-    befell = says.TO_HIT.search(before) or (who.counted and rule("near_events.unavoidable").search(before))
-    if not befell and (says.NEAR_MISS.search(before) or is_noun(before, m.group(), behind)):
+    befell = rule("contact_words.to_hit").search(before) or (
+        roster.counted and rule("near_events.unavoidable").search(before)
+    )
+    if not befell and (rule("contact_words.near_miss").search(before) or is_noun(before, m.group(), behind)):
         return None
     nxt = HIT.search(behind)
     scope = behind[: nxt.start()] if nxt else behind
-    thing = (says.THING_WAS.search(before) or says.PERSON_WAS.search(before)) if passive else None
+    thing = (
+        (rule("contact_words.thing_was").search(before) or rule("contact_words.person_was").search(before))
+        if passive
+        else None
+    )
     if thing:
-        return _thing_hit(told, thing, scope, m.group())
-    if not passive and who.counted and (moves := says.THING_MOVES.search(before)):
-        return _hit_by_thing(told, moves, scope, m.group(), who)
-    subjects = _subjects(told, before, m, starts)
+        return _thing_hit(statement, thing, scope, m.group())
+    if not passive and roster.counted and (moves := rule("contact_words.thing_moves").search(before)):
+        return _hit_by_thing(statement, moves, scope, m.group(), roster)
+    subjects = _subjects(statement, before, m, starts)
     if not subjects:
         return None
     if len(subjects) > 1:
-        return _mutual(told, subjects, m.group(), before, scope)
+        return _mutual(statement, subjects, m.group(), before, scope)
     actor, actor_area = subjects[0], subject_area(before, subjects[0])
     if actor not in MENTION.findall(before):
-        actor = _meant_by_pronoun(told, actor, scope, who)
-    other = None if passive or not who.counted else who.other(actor)
+        actor = _meant_by_pronoun(statement, actor, scope, roster)
+    other = None if passive or not roster.counted else roster.other(actor)
     if other and (part := door_of(actor, before, scope)):
         actor, actor_area = other, area_of(part)
     return (
-        _passive(told, actor, actor_area, scope, m.group(), who)
+        _passive(statement, actor, actor_area, scope, m.group(), roster)
         if passive
-        else _active(told, actor, actor_area, scope, m.group(), who)
+        else _active(statement, actor, actor_area, scope, m.group(), roster)
     )
 
 
-def _meant_by_pronoun(told: Statement, actor: str, scope: str, who: Roster) -> str:
-    """Whom "it" means that struck or was struck: not whom the sentence itself names behind the verb."""
+def _meant_by_pronoun(statement: Statement, actor: str, scope: str, roster: Roster) -> str:
+    """Resolves "it" as striker or struck: never the vehicle that the sentence itself names behind the verb."""
     whom = MENTION.search(scope)
-    return (_the_other(told, actor, who) or actor) if whom and whom.group() == actor else actor
+    return (_the_other(statement, actor, roster) or actor) if whom and whom.group() == actor else actor
 
 
-def _thing_hit(told: Statement, thing: re.Match[str], scope: str, verb: str) -> Blow | None:
+def _thing_hit(statement: Statement, thing: re.Match[str], scope: str, verb: str) -> ContactMention | None:
     """ "A tree was struck by the front of V1"."""
-    by = says.BY.search(scope)
+    by = rule("contact_words.by").search(scope)
     if not by:
         return None
     area = area_if_told(by["area"])
-    return Blow(by["v"], thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
+    return ContactMention(
+        by["v"], thing["object"].lower(), area, None, statement.number, statement.role, False, verb.lower()
+    )
 
 
-def _hit_by_thing(told: Statement, thing: re.Match[str], scope: str, verb: str, who: Roster) -> Blow | None:
+def _hit_by_thing(
+    statement: Statement, thing: re.Match[str], scope: str, verb: str, roster: Roster
+) -> ContactMention | None:
     """ "The gate closed and made contact with the front of V1"."""
-    whom, area = _object(told, "", scope, who)
-    if whom not in who.ids or whom is None:
+    whom, area = _object(statement, "", scope, roster)
+    if whom not in roster.ids or whom is None:
         return None
-    return Blow(whom, thing["object"].lower(), area, None, told.number, told.role, False, verb.lower())
+    return ContactMention(
+        whom, thing["object"].lower(), area, None, statement.number, statement.role, False, verb.lower()
+    )
 
 
 def _subjects(
-    told: Statement, before: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]]
+    statement: Statement, before: str, m: re.Match[str], starts: list[tuple[int, int, tuple[str, ...]]]
 ) -> tuple[str, ...]:
-    """The vehicles whose verb this is."""
-    caused = says.CAUSED.search(before)
+    """The vehicles that are the subject of this verb."""
+    caused = rule("contact_words.caused").search(before)
     if caused:
         return (caused["v"],)
     fitting = [s for at, _, s in starts if at < m.start()]
@@ -169,18 +156,20 @@ def _subjects(
     mentions = MENTION.findall(before)
     if mentions:
         return (mentions[-1],)
-    return (told.subject,) if told.subject else ()
+    return (statement.subject,) if statement.subject else ()
 
 
-def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
+def _active(
+    statement: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
+) -> ContactMention | None:
     pair = paired_areas(scope)
-    scope = _clause(says.ASIDE.sub(" ", scope))
-    own = says.WITH_ITS.search(scope)
+    scope = _clause(rule("contact_words.aside").sub(" ", scope))
+    own = rule("contact_words.with_its").search(scope)
     if own and rule("contact.made_contact").match(verb) and rule("contact.touched").match(scope):
-        own = None  # "made contact with the left door": whose door it is stands elsewhere
+        own = None  # "made contact with the left door": its owner is told elsewhere
     area = area_of(own["area"]) if own else area
     rest = scope[: own.start()] + scope[own.end() :] if own else scope
-    other, other_area = _object(told, actor, rest, who)
+    other, other_area = _object(statement, actor, rest, roster)
     if other is None:
         return None
     if (named := rule("contact.with_area_of").search(scope)) and named["v"] != other and scope[: named.start()].strip():
@@ -191,85 +180,94 @@ def _active(told: Statement, actor: str, area: Zone | None, scope: str, verb: st
         area = area or "back"
     if pair and area is None:
         area, other_area = pair
-    blow = Blow(actor, other, area, other_area, told.number, told.role, False, verb.lower())
-    return _area_against_area(blow, scope)
+    mention = ContactMention(actor, other, area, other_area, statement.number, statement.role, False, verb.lower())
+    return _area_against_area(mention, scope)
 
 
-def _area_against_area(blow: Blow, scope: str) -> Blow:
-    """The blow with the areas of "the left side of V1 against the right side of V2" behind its verb."""
-    met = says.AGAINST.search(scope)
-    if not met or {met["v1"], met["v2"]} != {blow.actor, blow.other}:
-        return blow
+def _area_against_area(mention: ContactMention, scope: str) -> ContactMention:
+    """The mention with the areas of "the left side of V1 against the right side of V2" behind its verb."""
+    met = rule("contact_words.against").search(scope)
+    if not met or {met["v1"], met["v2"]} != {mention.actor, mention.other}:
+        return mention
     zones = {met["v1"]: area_if_told(met["a1"]), met["v2"]: area_if_told(met["a2"])}
-    return replace(blow, actor_area=zones[blow.actor], other_area=zones[blow.other])
+    return replace(mention, actor_area=zones[mention.actor], other_area=zones[mention.other])
 
 
 def _clause(scope: str) -> str:
     """Up to the end of the clause, but at least as far as the first vehicle behind the verb."""
     first = MENTION.search(scope)
-    end = says.CLAUSE_END.search(scope, first.end() if first and first.start() < 70 else 0)
+    end = rule("contact_words.clause_end").search(scope, first.end() if first and first.start() < 70 else 0)
     return scope[: end.start()] if end else scope
 
 
-def _object(told: Statement, actor: str, scope: str, who: Roster) -> tuple[str | None, Zone | None]:
+def _object(statement: Statement, actor: str, scope: str, roster: Roster) -> tuple[str | None, Zone | None]:
     """What was hit, and where."""
-    m = says.ACTIVE_OBJECT.match(scope)
-    thing = says.OBJECT.match(scope)
+    m = rule("contact_words.active_object").match(scope)
+    thing = rule("contact_words.object").match(scope)
     if m and not (thing and thing.end() < m.start("v") and thing["object"].lower() != "trailer"):
         area = area_if_told(m["area"]) or _area_behind(scope[m.end() :])
-        return _not_itself(m["v"], actor, who, told), area
+        return _not_itself(m["v"], actor, roster, statement), area
     if thing and thing["object"].lower() not in ("trailer", "parked"):
         return thing["object"].lower(), None
-    if says.PRONOUN_OBJECT.match(scope) or says.THE_AREA.match(scope) or rule("contact.nothing").match(scope):
-        only = says.THE_AREA.match(scope)
-        return _the_other(told, actor, who), area_if_told(only["area"]) if only else _area_behind(scope) or _damaged(
-            told, who
-        )
+    if (
+        rule("contact_words.pronoun_object").match(scope)
+        or rule("contact_words.the_area").match(scope)
+        or rule("contact.nothing").match(scope)
+    ):
+        only = rule("contact_words.the_area").match(scope)
+        return _the_other(statement, actor, roster), area_if_told(only["area"]) if only else _area_behind(
+            scope
+        ) or _damaged(statement, roster)
     late = MENTION.search(scope)
     if late and late.group() != actor and late.start() < 60:
         named = rule("contact.area_of_vehicle").given(vehicle=late.group()).search(scope)
         return late.group(), area_if_told(named["area"]) if named else _area_behind(scope[late.end() :])
-    anything = says.ANY_OBJECT.match(scope) if who.counted else None
+    anything = rule("contact_words.any_object").match(scope) if roster.counted else None
     return (anything["object"].lower(), None) if anything else (None, None)
 
 
-def _the_other(told: Statement, actor: str, who: Roster) -> str | None:
+def _the_other(statement: Statement, actor: str, roster: Roster) -> str | None:
     """The vehicle that "it" means: of two the other one, else another of the sentence, else the unnumbered subject."""
-    subject = next((v for v in who.ids[:1] if who.counted and v != actor), None)
-    named = (v for v in MENTION.findall(told.text) if v != actor and v in who.ids)
-    earlier = told.earlier if told.earlier != actor else None
-    return who.other(actor) or next(named, subject or earlier)
+    subject = next((v for v in roster.ids[:1] if roster.counted and v != actor), None)
+    named = (v for v in MENTION.findall(statement.text) if v != actor and v in roster.ids)
+    earlier = statement.earlier if statement.earlier != actor else None
+    return roster.other(actor) or next(named, subject or earlier)
 
 
-def _damaged(told: Statement, who: Roster) -> Zone | None:
+def _damaged(statement: Statement, roster: Roster) -> Zone | None:
     """ "The left side of V2 was damaged when V1 contacted it": the area that the sentence begins with."""
-    found = says.DAMAGED.match(plain(told, who))
+    found = rule("contact_words.damaged").match(plain(statement, roster))
     return area_of(found["area"]) if found else None
 
 
-def _not_itself(named: str, actor: str, who: Roster, told: Statement) -> str | None:
-    """A vehicle cannot strike itself: the writer meant the other one, or whom the sentence before is about."""
+def _not_itself(named: str, actor: str, roster: Roster, statement: Statement) -> str | None:
+    """The named vehicle, or another one where it would strike itself: the other of two, or the subject of the sentence
+    before."""
     if named != actor:
         return named
-    return who.other(actor) if who.counted else _the_other(told, actor, who)
+    return roster.other(actor) if roster.counted else _the_other(statement, actor, roster)
 
 
 def _area_behind(text: str) -> Zone | None:
     """ "... in the left side", "... in the center of the rear bumper": the first phrase that names a side."""
     near = rule("contact.area_ends").split(_clause(text)[:80])[0]
     areas = [area_of(m["area"]) for m in rule("contact.owned_area").finditer(near)]
-    return next(filter(None, areas), None) if says.ON_THE.search(near) else None
+    return next(filter(None, areas), None) if rule("contact_words.on_the").search(near) else None
 
 
-def _passive(told: Statement, actor: str, area: Zone | None, scope: str, verb: str, who: Roster) -> Blow | None:
-    by = says.BY.search(scope)
-    where = says.ON_THE.search(scope[: by.start()] if by else scope) or rule("contact.area_first").match(scope)
+def _passive(
+    statement: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
+) -> ContactMention | None:
+    by = rule("contact_words.by").search(scope)
+    where = rule("contact_words.on_the").search(scope[: by.start()] if by else scope) or rule(
+        "contact.area_first"
+    ).match(scope)
     area = area or (area_of(where["area"]) if where else None)
-    other = by["v"] if by else who.other(actor)
+    other = by["v"] if by else roster.other(actor)
     if by and rule("contact.by_stranger").search(scope[: by.start()]):
         return None
     other_area = area_if_told(by["area"]) if by else area_by(scope)
-    own = says.WITH_ITS.search(scope[by.end() :] if by else scope)
+    own = rule("contact_words.with_its").search(scope[by.end() :] if by else scope)
     other_area = other_area or (area_of(own["area"]) if own else None)
     if rule("contact.rear_end").match(verb) or rule("contact.from_behind").search(scope):
         area, other_area = area or "back", other_area or "front"
@@ -277,22 +275,26 @@ def _passive(told: Statement, actor: str, area: Zone | None, scope: str, verb: s
         return None
     area, other_area = struck_pair(scope, area, other_area)
     area = area or (_area_behind(scope[by.end() :]) if by and not own else None)
-    other = _not_itself(other, actor, who, told) or other
-    return Blow(other, actor, other_area, area, told.number, told.role, True, verb.lower())
+    other = _not_itself(other, actor, roster, statement) or other
+    return ContactMention(other, actor, other_area, area, statement.number, statement.role, True, verb.lower())
 
 
-def _mutual(told: Statement, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> Blow:
+def _mutual(statement: Statement, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> ContactMention:
     """ "V1 and V2 collided front to front"."""
-    against = says.AGAINST.search(scope)
+    against = rule("contact_words.against").search(scope)
     if against:
         zones = {against["v1"]: area_if_told(against["a1"]), against["v2"]: area_if_told(against["a2"])}
         first, second = zones.get(subjects[0]), zones.get(subjects[1])
-        return Blow(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)
-    pair = says.PAIRED.search(scope)
+        return ContactMention(
+            subjects[0], subjects[1], first, second, statement.number, statement.role, False, verb.lower(), True
+        )
+    pair = rule("contact_words.paired").search(scope)
     first, second = (area_if_told(pair["a1"]), area_if_told(pair["a2"])) if pair else (None, None)
     if not pair:
-        both = says.WITH_ITS.search(scope) or says.OF_BOTH.search(before)
+        both = rule("contact_words.with_its").search(scope) or rule("contact_words.of_both").search(before)
         first = second = area_of(both["area"]) if both else None
     if rule("contact.head_on").search(scope):
         first = second = "front"
-    return Blow(subjects[0], subjects[1], first, second, told.number, told.role, False, verb.lower(), True)
+    return ContactMention(
+        subjects[0], subjects[1], first, second, statement.number, statement.role, False, verb.lower(), True
+    )

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.language import Rule, of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement, segments
-from sgcad_core.reading.motion.motion_record import Cue, Deed
+from sgcad_core.reading.motion.motion_record import ManeuverCue, Source
 from sgcad_core.reading.text.compass import COMPASS, WORDS, turned
 from sgcad_core.reading.text.sentence_roles import HIT, Role
 from sgcad_core.records.course import CourseTold, Hand, ImpactTold, Spin, Steering
@@ -26,23 +26,23 @@ _HANDS: dict[str, Hand] = {"left": "left", "right": "right"}
 
 
 @dataclass
-class _Heard:
+class _CourseReader:
     """What was read of one vehicle so far, and where each thing was read first."""
 
     course: CourseTold = field(default_factory=CourseTold)
-    sources: dict[str, Cue] = field(default_factory=dict)
+    sources: dict[str, Source] = field(default_factory=dict)
 
-    def hear(self, name: str, value: Any, cue: Cue) -> None:
+    def add(self, name: str, value: Any, source: Source) -> None:
         """Take a fact of the course unless it is known."""
         if name not in self.sources:
             self.course = replace(self.course, **{name: value})
-            self.sources[name] = cue
+            self.sources[name] = source
 
-    def hear_rest(self, name: str, value: Any, cue: Cue, *, anew: bool = False) -> None:
+    def add_rest(self, name: str, value: Any, source: Source, *, anew: bool = False) -> None:
         """Take a fact of the rest unless it is known; `anew`: instead of what is known."""
         if anew or f"rest.{name}" not in self.sources:
             self.course = replace(self.course, rest=replace(self.course.rest, **{name: value}))
-            self.sources[f"rest.{name}"] = cue
+            self.sources[f"rest.{name}"] = source
 
 
 @dataclass(frozen=True)
@@ -50,54 +50,60 @@ class CoursesRead:
     """Courses by vehicle, those of which anything is told, and where each fact was read ("V1 rest.where")."""
 
     courses: dict[str, CourseTold] = field(default_factory=dict)
-    sources: dict[str, Cue] = field(default_factory=dict)
+    sources: dict[str, Source] = field(default_factory=dict)
 
 
 class ImpactRead(NamedTuple):
     """One contact behind the first, and where it was read."""
 
     impact: ImpactTold
-    cue: Cue
+    source: Source
 
 
-def cut_by_deeds(told: Sequence[Statement], who: Roster) -> list[Segment]:
-    """Segments of all sentences, each with those whose deed it is."""
-    return [part for t in told for part in _cut(_of_the_impact(t), who)]
+def acting_segments(statements: Sequence[Statement], roster: Roster) -> list[Segment]:
+    """Segments of all sentences, each with the vehicles that act in it."""
+    return [part for t in statements for part in _cut(_of_the_impact(t), roster)]
 
 
-def _cut(told: Statement, who: Roster) -> list[Segment]:
+def _cut(statement: Statement, roster: Roster) -> list[Segment]:
     """One sentence; one that begins "Then rotated" goes on with the last one's subject."""
-    found = own_deeds(segments([told], who), told)
-    goes_on = rule("course_rest.then").match(told.text)
-    if not goes_on or not told.subject:
+    found = _with_own_acts(segments([statement], roster), statement)
+    goes_on = rule("course_rest.then").match(statement.text)
+    if not goes_on or not statement.subject:
         return found
-    end = len(told.text) - sum(len(part.text) for part in found)
-    return [Segment((told.subject,), told.text[goes_on.end() : end].lower(), told.role, told.number), *found]
+    end = len(statement.text) - sum(len(part.text) for part in found)
+    return [
+        Segment((statement.subject,), statement.text[goes_on.end() : end].lower(), statement.role, statement.number),
+        *found,
+    ]
 
 
 def courses_told(
-    told: Sequence[Statement], cut: Sequence[Segment], who: Roster, coded: Mapping[str, Deed] | None = None
+    statements: Sequence[Statement],
+    segments: Sequence[Segment],
+    roster: Roster,
+    coded: Mapping[str, ManeuverCue] | None = None,
 ) -> CoursesRead:
-    """What the text tells of every vehicle's course. `cut`: `cut_by_deeds`; `coded`: who lost control by the codes."""
-    impact = min((t.number for t in told if t.role == "impact"), default=10_000)
-    heard = {v: _Heard() for v in who.ids}
-    for vehicle, deed in (coded or {}).items():
-        heard[vehicle].hear("lost_control", True, deed.cue)
-    for segment in sorted(cut, key=lambda s: s.role in _RETOLD):
+    """The course of every vehicle as told. `segments`: of `acting_segments`; `coded`: losses of control by codes."""
+    impact = min((t.number for t in statements if t.role == "impact"), default=10_000)
+    heard = {v: _CourseReader() for v in roster.ids}
+    for vehicle, cue in (coded or {}).items():
+        heard[vehicle].add("lost_control", True, cue.source)
+    for segment in sorted(segments, key=lambda s: s.role in _RETOLD):
         if segment.role in UNREAD:
             continue
         for vehicle in segment.subjects:
             _read(heard[vehicle], segment, impact)
     courses = {v: one.course for v, one in heard.items() if not one.course.empty}
-    sources = {f"{v} {name}": cue for v, one in heard.items() for name, cue in one.sources.items()}
+    sources = {f"{v} {name}": source for v, one in heard.items() for name, source in one.sources.items()}
     return CoursesRead(courses, sources)
 
 
-def _of_the_impact(told: Statement) -> Statement:
-    """ "The impact caused V1 to rotate" as a deed of V1; "V1 after striking V2 rotated" as one of V1 alone."""
-    text = rule("course_rest.caused").sub(_caused, told.text)
+def _of_the_impact(statement: Statement) -> Statement:
+    """ "The impact caused V1 to rotate" with V1 as subject; "V1 after striking V2 rotated" with V1 alone."""
+    text = rule("course_rest.caused").sub(_caused, statement.text)
     text = rule("course_rest.after_striking").sub(r"\g<who>", text)
-    return told if text == told.text else told._replace(text=text)
+    return statement if text == statement.text else statement._replace(text=text)
 
 
 def _caused(m: re.Match[str]) -> str:
@@ -105,16 +111,18 @@ def _caused(m: re.Match[str]) -> str:
     return f"{m['who']} {'were' if m['who'].startswith('both') else 'was'} {verb}"
 
 
-def own_deeds(cut: Sequence[Segment], told: Statement) -> list[Segment]:
-    """Segments of one sentence, with what an onlooker did himself given back to him.
+def _with_own_acts(segments: Sequence[Segment], statement: Statement) -> list[Segment]:
+    """Segments of one sentence, with an onlooker's own acts given back to it.
 
-    "V2 noticed V1 turning into her path and steered right": she did; so did who "avoided V2 by steering left".
+    "V2 noticed V1 turning into her path and steered right": V2 steered, as it did in "avoided V2 by steering left".
     """
     found: list[Segment] = []
-    for segment in cut:
+    for segment in segments:
         before = found[-1] if found else None
         onlooker = before.subjects if before and rule("course_evasion.perceives").search(before.text) else ()
-        onlooker = onlooker or ((told.subject,) if told.subject and told.subject not in segment.subjects else ())
+        onlooker = onlooker or (
+            (statement.subject,) if statement.subject and statement.subject not in segment.subjects else ()
+        )
         back = rule("course_evasion.back_to_subject").search(segment.text)
         if onlooker and segment.text.startswith("by "):
             found.append(segment._replace(subjects=onlooker))
@@ -126,7 +134,7 @@ def own_deeds(cut: Sequence[Segment], told: Statement) -> list[Segment]:
     return found
 
 
-def _read(one: _Heard, segment: Segment, impact: int) -> None:
+def _read(one: _CourseReader, segment: Segment, impact: int) -> None:
     before, behind = _split(segment, impact)
     _read_evasion(one, segment, before)
     if behind:
@@ -156,27 +164,27 @@ def _split(segment: Segment, impact: int) -> tuple[str, str]:
 
 
 def _if_evading(text: str) -> str:
-    """A text behind the impact that retells what somebody did before it."""
+    """A text behind the impact that retells an evasion before it; else ""."""
     return text if rule("course_evasion.to_avoid").search(text) or rule("course_evasion.none").search(text) else ""
 
 
 # ------------------------------------------------------------------ before the contact
-def _read_evasion(one: _Heard, segment: Segment, text: str) -> None:
+def _read_evasion(one: _CourseReader, segment: Segment, text: str) -> None:
     none = rule("course_evasion.none").search(text)
     if none:
-        one.hear("no_evasion", True, Cue(segment.number, none[0], "course_evasion.none"))
+        one.add("no_evasion", True, Source(segment.number, none[0], "course_evasion.none"))
     lost = rule("meeting.lost").search(text)
     if lost and segment.role not in _RETOLD:
-        one.hear("lost_control", True, Cue(segment.number, lost[0], "meeting.lost"))
+        one.add("lost_control", True, Source(segment.number, lost[0], "meeting.lost"))
     for found in _done(text, of_role("braking")):
-        one.hear("brakes", True, Cue(segment.number, found[1][0], found[0].id))
+        one.add("brakes", True, Source(segment.number, found[1][0], found[0].id))
     for found in _done(text, of_role("steering")):
         to: Steering = _HANDS.get(found[1].groupdict().get("hand") or "", "either")
-        one.hear("steers", to, Cue(segment.number, found[1][0], found[0].id))
+        one.add("steers", to, Source(segment.number, found[1][0], found[0].id))
 
 
 def _done(text: str, wordings: Sequence[Rule]) -> list[tuple[Rule, re.Match[str]]]:
-    """The first of some wordings that tells a deed, not that it was left undone."""
+    """The first of some wordings that tells an act as done, not as left undone."""
     for wording in wordings:
         for m in wording.finditer(text):
             undone = rule("course_evasion.not_done").search(text[max(0, m.start() - 40) : m.end()])
@@ -186,46 +194,46 @@ def _done(text: str, wordings: Sequence[Rule]) -> list[tuple[Rule, re.Match[str]
 
 
 # ------------------------------------------------------------------ behind it
-def _read_spin(one: _Heard, segment: Segment, text: str) -> None:
+def _read_spin(one: _CourseReader, segment: Segment, text: str) -> None:
     m = rule("course_rest.turned").search(text)
     if not m:
         return
     said = (m["way"] or m["round"] or m["to"]).replace(" ", "").replace("-", "")
     way: Spin = "clockwise" if said in ("clockwise", "right") else "counterclockwise"
-    cue = Cue(segment.number, m[0], "course_rest.turned")
+    source = Source(segment.number, m[0], "course_rest.turned")
     degrees = m["degrees"] or m["deg"]
     if degrees and "spin" not in one.sources:
-        one.hear("spin_deg", float(degrees), cue)
-    one.hear("spin", way, cue)
+        one.add("spin_deg", float(degrees), source)
+    one.add("spin", way, source)
 
 
-def _read_rest(one: _Heard, segment: Segment, text: str) -> None:
+def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
     clause = _rest_clause(segment, text)
     known = "rest.at" in one.sources
     rolled = rule("course_rest.rolled").search(text)
     if rolled:
-        one.hear("rolls", True, Cue(segment.number, rolled[0], "course_rest.rolled"))
+        one.add("rolls", True, Source(segment.number, rolled[0], "course_rest.rolled"))
     lies = clause or (text if rolled else "")
     for wording in of_role("attitude"):
         if m := wording.search(lies):
-            one.hear_rest("attitude", wording.yields["attitude"], Cue(segment.number, m[0], wording.id))
+            one.add_rest("attitude", wording.yields["attitude"], Source(segment.number, m[0], wording.id))
             break
     if clause is not None and not rule("course_rest.unknown").search(clause):
         _read_facing(one, segment, clause)
         if m := rule("course_rest.against").search(clause):
-            one.hear_rest("against", m["thing"], Cue(segment.number, m[0], "course_rest.against"))
-        one.sources.setdefault("rest.at", Cue(segment.number, clause[:20], "course_rest.rest"))
+            one.add_rest("against", m["thing"], Source(segment.number, m[0], "course_rest.against"))
+        one.sources.setdefault("rest.at", Source(segment.number, clause[:20], "course_rest.rest"))
     if not known and segment.role not in _RETOLD:
         _read_place(one, segment, text, clause)
 
 
 def _rest_clause(segment: Segment, text: str) -> str | None:
-    """From the verb of coming to rest on; None where the text has none."""
+    """The text from the verb of coming to rest on; None where it has none."""
     m = rule("course_rest.rest").search(text) or rule("course_rest.stopped_there").search(text)
     return text[m.start() :] if m else None
 
 
-def _read_facing(one: _Heard, segment: Segment, clause: str) -> None:
+def _read_facing(one: _CourseReader, segment: Segment, clause: str) -> None:
     m = rule("course_rest.facing").search(clause)
     if not m:
         return
@@ -234,24 +242,24 @@ def _read_facing(one: _Heard, segment: Segment, clause: str) -> None:
     if m["first"]:
         first = 45.0 * COMPASS.index(WORDS[m["first"].lower()])
         angle += ((first - angle + 180) % 360 - 180) / 2
-    one.hear_rest("facing_deg", angle % 360, Cue(segment.number, m[0], "course_rest.facing"))
+    one.add_rest("facing_deg", angle % 360, Source(segment.number, m[0], "course_rest.facing"))
 
 
-def _read_place(one: _Heard, segment: Segment, text: str, clause: str | None) -> None:
+def _read_place(one: _CourseReader, segment: Segment, text: str, clause: str | None) -> None:
     """The clause of the rest says where; else the last place on the way there."""
     on_the_way = text[: len(text) - len(clause)] if clause else text
     for part in (on_the_way, clause or ""):
         found = _last_place(part)
         side = _side(part)
         if found is None and side is not None and part is clause and one.course.rest.where is not None:
-            one.hear_rest("side", side, Cue(segment.number, part, "course_rest.side_named"), anew=True)
+            one.add_rest("side", side, Source(segment.number, part, "course_rest.side_named"), anew=True)
         if found is None or (part is on_the_way and not _leaves(part)):
             continue
         wording, m = found
-        cue = Cue(segment.number, m[0], wording.id)
-        one.hear_rest("where", wording.yields["where"], cue, anew=True)
+        source = Source(segment.number, m[0], wording.id)
+        one.add_rest("where", wording.yields["where"], source, anew=True)
         if side is not None or wording.yields["where"] in ("road", "intersection"):
-            one.hear_rest("side", side, cue, anew=True)
+            one.add_rest("side", side, source, anew=True)
 
 
 def _leaves(text: str) -> bool:

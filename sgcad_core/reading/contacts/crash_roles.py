@@ -1,10 +1,10 @@
-"""Who began the crash: the role of every road user, initiator, responder or bystander, with the sentence that says so.
+"""Roles in the crash: initiator, responder or bystander for every road user, with the sentence that says so.
 
-The initiator's deed made the conflict (in NMVCCS's words: the critical reason is coded to it), the responder was left
-to deal with it, everybody who takes no part in the first contact is a bystander. Evidence adds up: the report's codes
-outweigh citations and broken rules, these the maneuvers, and where nothing tells them apart the striker began. Not a
-finding of guilt. Replaced one role at a time, as in J. M. Scanlon et al., Waymo Simulated Driving Behavior in
-Reconstructed Fatal Crashes, 2021. Knows no road.
+The initiator's act made the conflict (in NMVCCS's words: the critical reason is coded to it), the responder had to deal
+with it, actors without a part in the first contact are bystanders. Evidence adds up: the report's codes outweigh
+citations and broken rules, these the maneuvers; without any of them the striker is the initiator. Not a finding of
+guilt. Replaced one role at a time, as in J. M. Scanlon et al., Waymo Simulated Driving Behavior in Reconstructed Fatal
+Crashes, 2021. Knows no road.
 """
 
 from __future__ import annotations
@@ -17,34 +17,34 @@ from sgcad_core.reading.actors.vehicles import MENTION
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import DRIVES, Cue
-from sgcad_core.reading.provenance.crash_provenance import Telling, default
+from sgcad_core.reading.motion.motion_record import DRIVES, Source
+from sgcad_core.reading.provenance.crash_provenance import FactBuilder, default
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.specs import Maneuver
 
 _REASON, _EVENT, _BROKE, _CITED, _MANEUVER = 8.0, 4.0, 2.0, 2.0, 1.0
-"""What a telling weighs. The codes are given after an inquiry, by people who know all that a report tells."""
+"""Weights of the kinds of evidence. Codes are given after an inquiry, with all that a report tells at hand."""
 _BEGINS: dict[Maneuver, float] = {
     "crossing_centerline": 1.0, "u_turn": 0.9, "backing": 0.9, "departing_road_left": 0.8, "departing_road_right": 0.8,
     "turn_left": 0.8, "lane_change_left": 0.8, "lane_change_right": 0.8, "merge": 0.7, "overtaking": 0.6,
     "turn_right": 0.5, "negotiating_curve": 0.2, "straight": 0.0, "other": 0.0, "slowing": -0.1, "stopped": -0.2,
     "parked": -0.3,
 }  # fmt: skip
-"""How far a maneuver, by itself, makes a conflict: who leaves a lane or crosses others' paths has to wait for them."""
+"""How far a maneuver, by itself, makes a conflict: leaving a lane or crossing a path brings a duty to yield."""
 _FROM_DRIVEWAY, _FROM_STOP, _RAN_INTO = 0.6, 0.3, 1.5
 
 
-class Sign(NamedTuple):
+class RoleEvidence(NamedTuple):
     """One thing that speaks for (or, negative, against) a vehicle's having begun the crash."""
 
     vehicle: str
     weight: float
     rule: str
-    cue: Cue | None = None
+    source: Source | None = None
 
 
-def role_facts(telling: Telling, statements: Sequence[Statement], crash: CrashFacts) -> Iterator[Fact]:
-    """`vehicles.<id>.role` (and `others.<id>.role`) of everybody in the crash."""
+def role_facts(builder: FactBuilder, statements: Sequence[Statement], crash: CrashFacts) -> Iterator[Fact]:
+    """`vehicles.<id>.role` (and `others.<id>.role`) of every actor in the crash."""
     ids = [v.id for v in crash.vehicles] + [o.id for o in crash.others]
     signs = [*_told_signs(statements, {v.id for v in crash.vehicles}), *_maneuver_signs(crash)]
     pair = _pair(crash)
@@ -54,7 +54,7 @@ def role_facts(telling: Telling, statements: Sequence[Statement], crash: CrashFa
         if not pair or name not in pair:
             yield default(field, "bystander", "who takes no part in the first contact is a bystander")
         else:
-            yield _fact(telling, field, name, first, signs, pair)
+            yield _fact(builder, field, name, first, signs, pair)
 
 
 def _pair(crash: CrashFacts) -> tuple[str, str] | None:
@@ -64,14 +64,14 @@ def _pair(crash: CrashFacts) -> tuple[str, str] | None:
     return (crash.vehicles[0].id, crash.vehicles[1].id) if len(crash.vehicles) > 1 else None
 
 
-def _initiator(pair: tuple[str, str], signs: Iterable[Sign]) -> str:
+def _initiator(pair: tuple[str, str], signs: Iterable[RoleEvidence]) -> str:
     """The one of both with more signs; the striker where nothing tells them apart."""
     score = {name: sum(s.weight for s in signs if s.vehicle == name) for name in pair}
     return pair[0] if score[pair[0]] >= score[pair[1]] else pair[1]
 
 
 def _fact(
-    telling: Telling, field: str, name: str, first: str | None, signs: Sequence[Sign], pair: tuple[str, str]
+    builder: FactBuilder, field: str, name: str, first: str | None, signs: Sequence[RoleEvidence], pair: tuple[str, str]
 ) -> Fact:
     """The role with the sign that weighs most for it: one's own, else the other one's."""
     role: CrashRole = "initiator" if name == first else "responder"
@@ -80,13 +80,17 @@ def _fact(
     for whose, sign_of in ((name, way), (other, -way)):
         best = max((s for s in signs if s.vehicle == whose), key=lambda s: s.weight * sign_of, default=None)
         if best is not None and best.weight * sign_of > 0:
-            told = best.cue and whose == name and best.weight * sign_of >= _EVENT
-            return telling.stated(field, role, best.cue) if told else telling.inferred(field, role, best.rule, best.cue)
+            told = best.source and whose == name and best.weight * sign_of >= _EVENT
+            return (
+                builder.stated(field, role, best.source)
+                if told
+                else builder.inferred(field, role, best.rule, best.source)
+            )
     return default(field, role, "the striker began unless more is told")
 
 
 # ------------------------------------------------------------------ what sentences tell
-def _told_signs(statements: Sequence[Statement], known: set[str]) -> Iterator[Sign]:
+def _told_signs(statements: Sequence[Statement], known: set[str]) -> Iterator[RoleEvidence]:
     for sentence in statements:
         named = [v for v in MENTION.findall(sentence.text) if v in known]
         owner = named[0] if named else sentence.subject
@@ -94,12 +98,12 @@ def _told_signs(statements: Sequence[Statement], known: set[str]) -> Iterator[Si
             yield from _of_sentence(sentence, owner)
 
 
-def _of_sentence(sentence: Statement, owner: str) -> Iterator[Sign]:
+def _of_sentence(sentence: Statement, owner: str) -> Iterator[RoleEvidence]:
     text = sentence.text.lower()
     coded = sentence.role == "codes" or (sentence.role != "factors" and bool(rule("crash_roles.coded").search(text)))
     if (read := _read(text, sentence.subject == owner, coded)) is not None:
         weight, name = read
-        yield Sign(owner, weight, name, Cue(sentence.number, text[:60], name))
+        yield RoleEvidence(owner, weight, name, Source(sentence.number, text[:60], name))
 
 
 def _read(text: str, is_subject: bool, coded: bool) -> tuple[float, str] | None:
@@ -128,13 +132,13 @@ def _read_event(text: str) -> tuple[float, str]:
 
 
 # ------------------------------------------------------------------ what maneuvers suggest
-def _maneuver_signs(crash: CrashFacts) -> Iterator[Sign]:
+def _maneuver_signs(crash: CrashFacts) -> Iterator[RoleEvidence]:
     for v in crash.vehicles:
-        yield Sign(v.id, _MANEUVER * _begins(v), "crash_roles.maneuver")
+        yield RoleEvidence(v.id, _MANEUVER * _begins(v), "crash_roles.maneuver")
     for contact in crash.contacts[:1]:
         backed = any(v.id == contact.struck and v.maneuver == "backing" for v in crash.vehicles)
         if contact.striker_area == "front" and contact.struck_area == "back" and not backed:
-            yield Sign(contact.striker, _RAN_INTO, "crash_roles.rear end")
+            yield RoleEvidence(contact.striker, _RAN_INTO, "crash_roles.rear end")
 
 
 def _begins(v: VehicleFacts) -> float:

@@ -1,7 +1,7 @@
-"""What nearly happened: who would have struck whom, who evaded how, how near they came.
+"""Near crashes: the contact that nearly happened, the evasions, the clearance.
 
-A sentence that tells a near miss is read without its "nearly" and "to avoid" as if it told the contact, so that whoever
-reads contacts reads these as well. A report that tells a contact tells no near crash.
+A sentence that tells a near miss is read without its "nearly" and "to avoid" as if it told the contact, so that the
+reader of contacts reads these as well. A report that tells a contact tells no near crash.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from sgcad_core.reading.actors.vehicles import Roster
-from sgcad_core.reading.contacts.contact_telling import Blow
-from sgcad_core.reading.contacts.contacts import blows
+from sgcad_core.reading.contacts.contact_records import ContactMention
+from sgcad_core.reading.contacts.contacts import contact_mentions
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, Role, is_impact
 from sgcad_core.records.specs import EvasiveManeuver
 
@@ -28,29 +28,28 @@ _NUMBERS = {"a": 1, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six":
 _RANGE_M = (0.1, 10.0)
 
 
-class Evaded(NamedTuple):
-    """What one vehicle did so that nobody touched."""
+class EvasionTold(NamedTuple):
+    """The maneuver by which one vehicle avoided the contact."""
 
     vehicle: str
     maneuver: EvasiveManeuver
-    cue: Cue
+    source: Source
 
 
 class NearMiss(NamedTuple):
     """A contact that did not come about, as told."""
 
-    blows: tuple[Blow, ...] = ()
-    """Who would have struck whom; none where two come together and no more is told."""
-    evasions: tuple[Evaded, ...] = ()
+    contact_mentions: tuple[ContactMention, ...] = ()
+    """Contacts that would have happened; none where two vehicles come together and no more is told."""
+    evasions: tuple[EvasionTold, ...] = ()
     clearance_m: float | None = None
-    clearance_at: Cue | None = None
 
 
 @dataclass(frozen=True)
-class NearFacts:
-    """That the first contact of a crash's facts is one that did not come about, and how it did not.
+class NearCrashFacts:
+    """Marks the first contact of a crash's facts as avoided, with evasions and clearance.
 
-    Sides that nobody tells are inferred like those of a contact; evasions that nobody tells are left to the planner.
+    Untold sides are inferred like those of a contact; untold evasions are left to the planner.
     """
 
     evasions: tuple[tuple[str, EvasiveManeuver], ...] = ()
@@ -59,56 +58,57 @@ class NearFacts:
     """False: two come together, and how they did not touch is not told."""
 
 
-def near_miss(told: Sequence[Statement], cut: Sequence[Segment], who: Roster, *, of_study: bool) -> NearMiss | None:
+def near_miss(
+    statements: Sequence[Statement], segments: Sequence[Segment], roster: Roster, *, of_study: bool
+) -> NearMiss | None:
     """The near crash of a report that tells no contact; None where it tells none either.
 
     `of_study`: what a study watched is told because two came near each other, whether the text says so or not.
     """
-    missed = near_misses(told, who)
-    no_crash = of_study or not any(rule("near_events.crash").search(t.text) for t in told)
+    missed = near_misses(statements, roster)
+    no_crash = of_study or not any(rule("near_events.crash").search(t.text) for t in statements)
     if not missed or not no_crash:
-        denied = [t for t in told if rule("near_events.denied").search(t.text)]
-        silent = not any(tells_hit(t) for t in told if t not in denied)
+        denied = [t for t in statements if rule("near_events.denied").search(t.text)]
+        silent = not any(tells_hit(t) for t in statements if t not in denied)
         together = silent and (of_study or (no_crash and denied))
-        return NearMiss() if together and len(who.ids) > 1 else None
+        return NearMiss() if together and len(roster.ids) > 1 else None
     first = missed[0]
     pair = (first.actor, first.other)
-    clearance = next(((m, t) for t in told if t.role in _READ and (m := told_clearance_m(t.text))), None)
-    return NearMiss(
-        missed, evaded(cut, first.number, pair, who.ids[0]), clearance[0] if clearance else None,
-        Cue(clearance[1].number, "", "near_events.clearance") if clearance else None,
-    )  # fmt: skip
+    clearance = next((m for t in statements if t.role in _READ and (m := told_clearance_m(t.text))), None)
+    return NearMiss(missed, evaded(segments, first.number, pair, roster.ids[0]), clearance)
 
 
-def near_misses(told: Iterable[Statement], who: Roster) -> tuple[Blow, ...]:
+def near_misses(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
     """Contacts that nearly came about, in the order of the text."""
-    found: list[Blow] = []
-    for t in told:
+    found: list[ContactMention] = []
+    for t in statements:
         if t.role in _READ:
-            found += _missed(t, who)
+            found += _missed(t, roster)
     return tuple(found)
 
 
-def tells_hit(told: Statement) -> bool:
-    """Whether a sentence tells a contact, be it that nobody could read whose."""
-    return is_impact(rule("near_events.no_hit").sub(" ", told.text))
+def tells_hit(statement: Statement) -> bool:
+    """Whether a sentence tells a contact, even where its vehicles cannot be read."""
+    return is_impact(rule("near_events.no_hit").sub(" ", statement.text))
 
 
-def _missed(told: Statement, who: Roster) -> tuple[Blow, ...]:
-    text = told.text
+def _missed(statement: Statement, roster: Roster) -> tuple[ContactMention, ...]:
+    text = statement.text
     for near in of_role("near_miss"):
         text = near.sub(lambda m, to=near.yields["to"]: m[0] if _could_not(m) else m.expand(to), text)
-    if text != told.text:
-        return blows([told._replace(text=text, role="impact" if is_impact(text) else told.role)], who)
+    if text != statement.text:
+        return contact_mentions(
+            [statement._replace(text=text, role="impact" if is_impact(text) else statement.role)], roster
+        )
     return ()
 
 
-def before_evasion(cut: Iterable[Segment]) -> tuple[Segment, ...]:
-    """An account in short: all that it tells of a vehicle is its approach, up to where somebody evades.
+def before_evasion(segments: Iterable[Segment]) -> tuple[Segment, ...]:
+    """Segments cut before the evasion: the rest is the approach of the vehicle.
 
     Braking to avoid a contact is no maneuver before it.
     """
-    return tuple(map(_before_evasion, cut))
+    return tuple(map(_before_evasion, segments))
 
 
 def _before_evasion(segment: Segment) -> Segment:
@@ -121,35 +121,35 @@ def _could_not(match: re.Match[str]) -> bool:
     return bool(rule("near_events.could_not").search(match.string[: match.start()]))
 
 
-def evaded(cut: Sequence[Segment], number: int, pair: tuple[str, ...], watched: str) -> tuple[Evaded, ...]:
-    """What a pair did in a sentence or beside it, one maneuver each.
+def evaded(segments: Sequence[Segment], number: int, pair: tuple[str, ...], watched: str) -> tuple[EvasionTold, ...]:
+    """Evasions of a pair in a sentence or beside it, one maneuver each.
 
-    Of anybody but the one who is `watched` only what was done to avoid: others brake for reasons of their own.
+    Of vehicles other than the `watched` one only acts done to avoid count: others brake for reasons of their own.
     """
-    found: dict[str, Evaded] = {}
-    for segment in sorted(cut, key=lambda s: (abs(s.number - number), s.number)):
+    found: dict[str, EvasionTold] = {}
+    for segment in sorted(segments, key=lambda s: (abs(s.number - number), s.number)):
         if abs(segment.number - number) > _NEAR or segment.role not in _READ:
             continue
         for vehicle in segment.subjects:
             told = vehicle == watched or rule("near_events.act").search(segment.text)
             if vehicle in pair and vehicle not in found and told and (how := _maneuver(segment)):
-                found[vehicle] = Evaded(vehicle, *how)
+                found[vehicle] = EvasionTold(vehicle, *how)
     return tuple(found.values())
 
 
-def _maneuver(segment: Segment) -> tuple[EvasiveManeuver, Cue] | None:
+def _maneuver(segment: Segment) -> tuple[EvasiveManeuver, Source] | None:
     """The evasive maneuver that a stretch of text tells of its subject."""
     told = {word: m for e in of_role("evasion") for word in e.yields if (m := e.search(segment.text))}
     if not told:
         return None
     first = min(told.values(), key=lambda m: m.start())
-    cue = Cue(segment.number, first.group(), "near_events.evasion")
+    source = Source(segment.number, first.group(), "near_events.evasion")
     if "steers" not in told:
-        return ("braking" if "brakes" in told else "accelerating"), cue
+        return ("braking" if "brakes" in told else "accelerating"), source
     side = told["steers"]["side"] or told["steers"]["lane"]
     sides: dict[str, EvasiveManeuver] = {"left": "steering_left", "right": "steering_right"}
     maneuver = sides.get(side or "", "steering")
-    return (_BRAKING[maneuver] if "brakes" in told else maneuver), cue
+    return (_BRAKING[maneuver] if "brakes" in told else maneuver), source
 
 
 _BRAKING: dict[EvasiveManeuver, EvasiveManeuver] = {

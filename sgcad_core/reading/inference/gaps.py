@@ -1,7 +1,7 @@
-"""What a text lacks that no crash can be drawn from it: one reason each, in words, and what it would have to tell.
+"""Reasons why no crash can be drawn from a text, and what it would have to tell.
 
 A text in another language, several reports in one file, an account that was blacked out, a form without an account, a
-text without a crash, and a crash of which nobody can say who touched whom. Knows no network.
+text without a crash, and a crash whose contact cannot be read. Knows no network.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.text.forms import is_form
 from sgcad_core.reading.text.normalise import Sentence
+from sgcad_core.reading.text.report_styles import is_form
 
 _FEWEST_WORDS = 12
 """Below, the share of small words says nothing."""
@@ -35,7 +35,7 @@ class Gap(NamedTuple):
 _NO_CRASH = Gap("the narrative tells no crash", ("a crash: who touched whom or what",))
 
 
-def foreign(text: str) -> Gap | None:
+def other_language(text: str) -> Gap | None:
     """Whether a text is in another language."""
     words, small = len(rule("gaps.word").findall(text)), len(rule("gaps.english").findall(text))
     short, other = len(rule("gaps.short_english").findall(text)), len(rule("gaps.other_language").findall(text))
@@ -45,7 +45,7 @@ def foreign(text: str) -> Gap | None:
     return Gap("the narrative is not in English", ("an English narrative",), True)
 
 
-def several(text: str) -> Gap | None:
+def several_reports(text: str) -> Gap | None:
     """Whether a text holds several reports, each under its number."""
     numbers = dict.fromkeys(m["number"] for m in rule("gaps.report_number").finditer(text))
     if len(numbers) < 2:
@@ -72,7 +72,7 @@ def without_actors(text: str, sentences: Sequence[Sentence]) -> Gap:
     return Gap("the narrative names no vehicle", ("which vehicles were involved", "how they traveled"))
 
 
-def untold(text: str, met: Iterable[bool]) -> Gap | None:
+def contact_untold(text: str, met: Iterable[bool]) -> Gap | None:
     """Whether no contact of the subject is told; `met`: of each contact, whether it is told and the subject's."""
     known = tuple(met)
     if any(known):
@@ -83,9 +83,8 @@ def untold(text: str, met: Iterable[bool]) -> Gap | None:
                ("who struck whom or what", "with which sides"), unread=True)  # fmt: skip
 
 
-def thin(text: str) -> Gap:
-    """Of a text that numbers several vehicles and tells neither a contact nor where anybody drove: to draw it would be
-    to invent it."""
+def motion_untold(text: str) -> Gap:
+    """The gap of a text with numbered vehicles, without a contact or direction: a drawing would be invented."""
     if not rule("gaps.crash_word").search(text):
         return _NO_CRASH
     reason = "the narrative tells neither who struck whom nor how anybody traveled"

@@ -1,7 +1,7 @@
-"""Other readings of a crash, each one weak fact away from the one that stands, the most likely first.
+"""Alternative readings of a crash, each one weak fact away from the one that stands, the most likely first.
 
-For a writer whose checks doubt what was read. Whatever the text states outright is varied last and at a price, so that
-a stated fact gives way only where the checks gain much by it. Knows no network and no motion.
+For a writer whose checks doubt the reading. Stated facts are varied last and at a price, so that a stated fact gives
+way only where the checks gain much by it. Knows no network and no motion.
 """
 
 from __future__ import annotations
@@ -10,16 +10,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
-from sgcad_core.reading.inference.inference_state import AREAS
+from sgcad_core.reading.contacts.contact_records import AREAS, ContactFacts
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.text.compass import turned
 from sgcad_core.records.specs import Maneuver
 
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
 _CORNER, _OPEN_SIDE, _GUESSED, _LANE, _HEADING, _TURN, _SWAP = 0.1, 0.25, 0.2, 0.2, 0.3, 0.5, 0.7
 """Prices: what a reading must gain by its checks to be preferred."""
-
-
 ONWARD = "drives straight on"
 
 
@@ -32,7 +30,7 @@ class Hypothesis(NamedTuple):
     open: bool = False
     """Whether the text is silent on what differs, so that nothing told gives way."""
     corner: bool = False
-    """Whether it is the other side of a corner in a report that numbers nobody: the words fit both."""
+    """Whether it is the other side of a corner in a report without vehicle numbers: the words fit both."""
 
 
 def hypotheses(facts: CrashFacts) -> list[Hypothesis]:

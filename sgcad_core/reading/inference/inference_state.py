@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple, get_args
 
+from sgcad_core.reading.actors.people_objects import WalkDirection
 from sgcad_core.reading.actors.vehicles import Roster
-from sgcad_core.reading.actors.walkers import Walk
-from sgcad_core.reading.contacts.contact_telling import Blow
+from sgcad_core.reading.contacts.contact_records import ContactFacts, ContactMention
 from sgcad_core.reading.contacts.crash_course import CoursesRead, ImpactRead
 from sgcad_core.reading.contacts.near_crash import NearMiss
-from sgcad_core.reading.motion.motion_record import Cue, Motion
+from sgcad_core.reading.motion.motion_record import Source, VehicleMotion
 from sgcad_core.reading.text.area_phrases import Zone
 from sgcad_core.records.specs import Area, Compass, Maneuver
 
@@ -25,45 +24,28 @@ TURN_DEG: dict[Maneuver, float] = {
 QUARTER_DEG: dict[Maneuver, float] = {"turn_left": -90, "turn_right": 90}
 """Heading change of a turn from one leg to another, clockwise degrees."""
 HIT_FROM: dict[Area, float] = {"left": 90.0, "right": 270.0, "back": 0.0, "front": 180.0}
-"""Heading of a striking vehicle relative to the one whose side it hits with its front, clockwise degrees."""
+"""Heading of a striker relative to the vehicle whose side it hits with its front, clockwise degrees."""
 
 
 @dataclass
-class Draft:
+class CrashTold:
     """What was read."""
 
-    who: Roster
-    motions: dict[str, Motion]
-    blows: tuple[Blow, ...]
+    roster: Roster
+    motions: dict[str, VehicleMotion]
+    contact_mentions: tuple[ContactMention, ...]
     course: CoursesRead = field(default_factory=CoursesRead)
     impacts: tuple[ImpactRead, ...] = ()
     near: NearMiss | None = None
-    """Of a report that tells no contact: `blows` are then those that did not come about."""
-    walks: Mapping[str, Walk] = field(default_factory=dict)
-    """How those who have no number go, by their word in `blows`."""
+    """Of a report that tells no contact: `contact_mentions` are then those that did not come about."""
+    walks: Mapping[str, WalkDirection] = field(default_factory=dict)
+    """Directions of pedestrians and others without a number, by their word in `contact_mentions`."""
     missed: frozenset[frozenset[str]] = frozenset()
     """Pairs that the text tells to have nearly touched."""
 
 
-AREAS: tuple[Area, ...] = get_args(Area)
-
-
-class Joined(NamedTuple):
-    """A contact with all areas; whether both areas (and no corner), and whether the contact itself was told."""
-
-    striker: str
-    struck: str
-    striker_area: Area
-    struck_area: Area
-    areas_told: bool
-    told: bool
-    striker_may: tuple[Area, ...] = AREAS
-    """Sides that the words allow: both of a corner, all where none is told."""
-    struck_may: tuple[Area, ...] = AREAS
-
-
 @dataclass
-class Settled:
+class CrashInferred:
     """What follows."""
 
     headings: dict[str, Compass] = field(default_factory=dict)
@@ -71,10 +53,10 @@ class Settled:
     exits: dict[str, Compass] = field(default_factory=dict)
     maneuvers: dict[str, Maneuver] = field(default_factory=dict)
     told_maneuvers: set[str] = field(default_factory=set)
-    sources: dict[str, Cue] = field(default_factory=dict)
+    sources: dict[str, Source] = field(default_factory=dict)
     """Where "V1 heading", "V1 maneuver" and "V1 speed" were read, as far as they were."""
     speeds: dict[str, int] = field(default_factory=dict)
-    contacts: list[Joined] = field(default_factory=list)
+    contacts: list[ContactFacts] = field(default_factory=list)
 
 
 def end_of(zone: Zone | None) -> Area | None:
@@ -98,6 +80,6 @@ def side_hit(from_deg: float) -> Area:
     return min(HIT_FROM, key=lambda area: apart(HIT_FROM[area], from_deg))
 
 
-def is_sideswipe(blow: Blow) -> bool:
-    """Whether the blow's verb says that flanks touched."""
-    return blow.words.startswith(("sideswip", "side-swip", "side-slap", "sideslap"))
+def is_sideswipe(mention: ContactMention) -> bool:
+    """Whether the verb of the contact says that flanks touched."""
+    return mention.words.startswith(("sideswip", "side-swip", "side-slap", "sideslap"))

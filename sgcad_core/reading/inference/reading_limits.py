@@ -1,7 +1,4 @@
-"""What of a report was not taken as it is written, because it goes beyond a limit: told, so that nobody wonders.
-
-Knows the reading's limits; changes nothing.
-"""
+"""Notes on what of a report goes beyond a limit of the reader and was not taken as it is written."""
 
 from __future__ import annotations
 
@@ -19,7 +16,7 @@ BEYOND = "limit: "
 """How such a note begins."""
 
 
-def beyond(reading: Reading) -> Iterator[str]:
+def limit_notes(reading: Reading) -> Iterator[str]:
     """One note a limit that the report goes beyond."""
     length = len(reading.narrative)
     if length > MOST_READ:

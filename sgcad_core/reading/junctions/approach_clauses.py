@@ -6,30 +6,30 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
-from sgcad_core.reading.junctions.approach_items import Item, Token, items_of
-from sgcad_core.reading.junctions.approach_marks import KINDS, ROADS, Mark, Marks
+from sgcad_core.reading.junctions.approach_items import ApproachToken, LaneItem, items_of
+from sgcad_core.reading.junctions.approach_marks import KINDS, ROADS, LegReference, LegReferences
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.text.compass import COMPASS
 
 
-class Clause(NamedTuple):
-    """Lanes of the same legs; `same`: they are as those told before, or as those of `source`."""
+class LaneClause(NamedTuple):
+    """Lanes of the same legs; `same`: they are as those told before, or as those of `copied_from`."""
 
-    mark: Mark
-    items: list[Item]
+    mark: LegReference
+    items: list[LaneItem]
     same: bool
-    source: Mark | None = None
+    copied_from: LegReference | None = None
 
 
 @dataclass
-class Clauses:
+class ClauseCutter:
     """Cuts a sentence into stretches of lanes of the same legs."""
 
-    marks: Marks
+    marks: LegReferences
     text: str
     known: bool = False
     """Whether lanes were told before this sentence."""
-    items: list[Item] = field(default_factory=list)
+    items: list[LaneItem] = field(default_factory=list)
     same: bool = False
     driven: bool = False
     """Whether a vehicle was named: the lanes behind it are where it drives."""
@@ -37,11 +37,11 @@ class Clauses:
     """What a list stands under: "Lanes out:"."""
     next: Literal["", "in", "out"] = ""
     """Which way the next lanes lead: "leaves with one"."""
-    last: Token | None = None
-    marked: Token | None = None
+    last: ApproachToken | None = None
+    marked: ApproachToken | None = None
     """The last mark, while no lanes follow it."""
 
-    def read(self, parts: Sequence[Token]) -> Iterator[Clause]:
+    def read(self, parts: Sequence[ApproachToken]) -> Iterator[LaneClause]:
         """The stretches in order."""
         for part in parts:
             if part.kind == "sep":
@@ -64,13 +64,13 @@ class Clauses:
             self.last = part
         yield from self._flush()
 
-    def _flush(self) -> Iterator[Clause]:
+    def _flush(self) -> Iterator[LaneClause]:
         if self.items or self.same:
-            yield Clause(self.marks.mark, self.items, self.same and self.marked is not None)
+            yield LaneClause(self.marks.mark, self.items, self.same and self.marked is not None)
         self.items, self.same = [], False
 
-    # -------------------------------------------------------------- whose lanes
-    def _marked(self, part: Token) -> Iterator[Clause]:
+    # -------------------------------------------------------------- legs of the lanes
+    def _marked(self, part: ApproachToken) -> Iterator[LaneClause]:
         before = self.marks.mark
         found = self.marks.of(part)
         self.driven = self.driven and not rule("approaches.drivers").search(self.text[: part.start])
@@ -79,13 +79,13 @@ class Clauses:
         gap = self._gap(part)
         if self.same and not self.items and self.marked and part.kind == "legs":
             self.marks.mark, self.same = before, False
-            yield Clause(before, [], True, found)
+            yield LaneClause(before, [], True, found)
             return
         if part.kind == "every" and self.marked and not self.items and self.marked.kind in ROADS:
             self.marks.mark = before
             return
         if self.marked and not self.items and _alike(self.marked, part) and rule("approaches.joint").fullmatch(gap):
-            found = Mark(tuple(dict.fromkeys((*before.keys, *found.keys))), found.toward)
+            found = LegReference(tuple(dict.fromkeys((*before.keys, *found.keys))), found.toward)
         elif self.marked and not self.items and part.kind in ROADS and gap.strip() in ("on", "on the", "of"):
             return
         elif self.items and self._of_last(part, found, before, gap):
@@ -99,10 +99,10 @@ class Clauses:
             yield from self._flush()
         self.marks.mark, self.marked = found, part
 
-    def _gap(self, part: Token) -> str:
+    def _gap(self, part: ApproachToken) -> str:
         return self.text[self.last.end : part.start] if self.last else self.text[: part.start]
 
-    def _of_last(self, part: Token, found: Mark, before: Mark, gap: str) -> bool:
+    def _of_last(self, part: ApproachToken, found: LegReference, before: LegReference, gap: str) -> bool:
         """ "two lanes westbound" on a leg that is named: which way these lanes lead."""
         last = self.items[-1]
         if part.kind != "ways" or not rule("approaches.beside").fullmatch(gap) or last.toward:
@@ -114,7 +114,7 @@ class Clauses:
         last.toward, last.end = part.match["list"] or part.match["list2"], part.end
         return True
 
-    def _behind(self, part: Token, before: Mark) -> bool:
+    def _behind(self, part: ApproachToken, before: LegReference) -> bool:
         """Whether a mark stands behind the lanes of which it tells."""
         between = self.text[self.items[-1].end : part.start]
         if rule("approaches.cut").search(between):
@@ -126,13 +126,13 @@ class Clauses:
             return bool(rule("approaches.beside").fullmatch(between))
         return (not single and part.kind in ("place", "legs")) or (part.kind == "place" and self.items[-1].way == "out")
 
-    def _trailing(self, part: Token, found: Mark, before: Mark) -> Iterator[Clause]:
+    def _trailing(self, part: ApproachToken, found: LegReference, before: LegReference) -> Iterator[LaneClause]:
         """The lanes before the mark are those of its legs; of others before them, if the last go out."""
         last = self.items[-1]
         only_last = len(self.items) > 1 and (last.way == "out" or (part.kind == "ways" and last.plain))
         if only_last:
             self.items, rest = [last], self.items[:-1]
-            yield Clause(before, rest, self.same)
+            yield LaneClause(before, rest, self.same)
         self.same = False
         self.marks.mark, self.marked = found, None
         if part.kind in ("place", "legs") or last.way == "out" or (part.kind == "ways" and not last.plain):
@@ -140,7 +140,7 @@ class Clauses:
             self.marks.mark = before if part.kind in ("place", "legs") else found
 
     # -------------------------------------------------------------- lanes
-    def _lanes(self, part: Token) -> None:
+    def _lanes(self, part: ApproachToken) -> None:
         """Add a part to the lanes of this stretch."""
         last = self.items[-1] if self.items else None
         if part.kind in ("lanes", "number", "which"):
@@ -162,7 +162,7 @@ class Clauses:
         elif part.kind == "same":
             self.same = True
 
-    def _directed(self, part: Token) -> None:
+    def _directed(self, part: ApproachToken) -> None:
         """A sign of the direction: of the lanes right before it, or of all that come in the list under it."""
         way: Literal["in", "out"] = "out" if part.kind == "out" else "in"
         if not self.items:
@@ -172,12 +172,12 @@ class Clauses:
         elif not self.items[-1].way and not rule("approaches.cut").search(self.text[self.items[-1].end : part.start]):
             self.items[-1].way = way
 
-    def _use(self, part: Token) -> None:
+    def _use(self, part: ApproachToken) -> None:
         gap = self._gap(part)
         if not self.items:
             listing = "lane" in self.text.lower() or self.known
             if self.marked and listing and rule("approaches.bare").fullmatch(gap):
-                self.items.append(Item(1, [*part.use], bare=True, start=part.start, end=part.end))
+                self.items.append(LaneItem(1, [*part.use], bare=True, start=part.start, end=part.end))
             return
         last = self.items[-1]
         shares = bool(last.uses) and bool(rule("approaches.sharing").fullmatch(gap))
@@ -191,9 +191,9 @@ class Clauses:
             last.end = part.end
             return
         last.after = last.after or gap
-        self.items.append(Item(1, [*part.use], bare=True, soft=soft, start=part.start, end=part.end))
+        self.items.append(LaneItem(1, [*part.use], bare=True, soft=soft, start=part.start, end=part.end))
 
 
-def _alike(first: Token, second: Token) -> bool:
+def _alike(first: ApproachToken, second: ApproachToken) -> bool:
     """Whether two marks may be joined: both legs, or both directions of travel."""
     return first.kind == second.kind or {first.kind, second.kind} == {"legs", "place"}

@@ -1,7 +1,7 @@
-"""The parts of a sentence that lists lanes of approaches: whose lanes, how many, for what, in or out.
+"""The parts of a sentence that lists lanes of approaches: leg, number, use, in or out.
 
 Marks of legs ("from the north", "southbound drivers", "every leg"), counts of lanes with their uses, and signs of the
-direction. Which leg gets what is decided in `sgcad_core.reading.junctions.approach_lanes`.
+direction. `sgcad_core.reading.junctions.approach_lanes` assigns them to legs.
 """
 
 from __future__ import annotations
@@ -14,9 +14,7 @@ from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.records.specs import Turn
 
-Use = Literal["R", "T", "L"]
 Uses = frozenset[str]
-
 _TURNS: dict[Uses, Turn] = {
     frozenset("R"): "right", frozenset("RT"): "through_right", frozenset("T"): "through",
     frozenset("LT"): "left_through", frozenset("L"): "left", frozenset("LR"): "left_right", frozenset("LRT"): "any",
@@ -24,7 +22,7 @@ _TURNS: dict[Uses, Turn] = {
 _FROM_CURB: tuple[Turn, ...] = ("right", "through_right", "left_right", "any", "through", "left_through", "left")
 
 
-class Token(NamedTuple):
+class ApproachToken(NamedTuple):
     """A part of a sentence, by the rule that reads it."""
 
     kind: str
@@ -34,23 +32,23 @@ class Token(NamedTuple):
     use: str = ""
 
 
-def tokens(text: str, names: tuple[str, ...] = ()) -> list[Token]:
+def tokens(text: str, names: tuple[str, ...] = ()) -> list[ApproachToken]:
     """Parts in order, none within another; of two that begin at one place the longer, else the one of lower weight.
 
     `names`: of roads.
     """
     found = [
-        (m.start(), -m.end(), place, Token(by.yields["token"], m.start(), m.end(), m, by.yields.get("use", "")))
+        (m.start(), -m.end(), place, ApproachToken(by.yields["token"], m.start(), m.end(), m, by.yields.get("use", "")))
         for place, by in enumerate(of_role("approach_token"))
         for m in by.finditer(text)
         if m.end() > m.start()
     ]
     found += [
-        (m.start(), -m.end(), 99, Token("named", m.start(), m.end(), m))
+        (m.start(), -m.end(), 99, ApproachToken("named", m.start(), m.end(), m))
         for name in names
         for m in rule("approaches.named").given(name=name).finditer(text)
     ]
-    kept: list[Token] = []
+    kept: list[ApproachToken] = []
     for _, _, _, token in sorted(found, key=lambda one: one[:3]):
         if not kept or token.start >= kept[-1].end:
             kept.append(token)
@@ -58,7 +56,7 @@ def tokens(text: str, names: tuple[str, ...] = ()) -> list[Token]:
 
 
 @dataclass
-class Item:
+class LaneItem:
     """Some lanes: how many, the uses of each as far as told (`soft`: joined by "and" to the item before)."""
 
     count: int
@@ -80,7 +78,7 @@ class Item:
         return not (self.uses or self.way == "out" or self.bare or self.which)
 
 
-def items_of(part: Token, text: str, listing: bool) -> list[Item]:
+def items_of(part: ApproachToken, text: str, listing: bool) -> list[LaneItem]:
     """The lanes of a count: "two through lanes"; "right-turn and left-turn lanes" are one each. Nothing of "the lane".
 
     `listing`: within a list, where "right lane" is one too.
@@ -88,7 +86,7 @@ def items_of(part: Token, text: str, listing: bool) -> list[Item]:
     words = part.match.groupdict()
     if part.kind == "which":
         number = 2 if words["which"].endswith(("two", "others")) else 1
-        return [Item(number, which=True, start=part.start, end=part.end)]
+        return [LaneItem(number, which=True, start=part.start, end=part.end)]
     if part.kind == "number" and _no_count(words["count"], text[: part.start]):
         return []
     mods = (words.get("mods") or "").lower()
@@ -104,8 +102,8 @@ def items_of(part: Token, text: str, listing: bool) -> list[Item]:
     way: Literal["", "out"] = "out" if out else ""
     single = words.get("noun") == "lane" and not rule("approaches.two_turns").search(mods)
     if part.kind == "lanes" and len(uses) > 1 and not single and (not count or count_of(count) in (1, len(uses))):
-        return [Item(1, [use], way, toward, start=part.start, end=part.end) for use in uses]
-    return [Item(count_of(count), uses, way, toward, start=part.start, end=part.end)]
+        return [LaneItem(1, [use], way, toward, start=part.start, end=part.end) for use in uses]
+    return [LaneItem(count_of(count), uses, way, toward, start=part.start, end=part.end)]
 
 
 def _no_count(count: str, before: str) -> bool:
@@ -122,7 +120,7 @@ def count_of(word: str | None) -> int:
 
 
 # ------------------------------------------------------------------ uses of the lanes of one approach
-def lane_uses(items: list[Item]) -> tuple[int, tuple[Turn, ...]]:
+def lane_uses(items: list[LaneItem]) -> tuple[int, tuple[Turn, ...]]:
     """Lanes towards the junction and, where turn lanes are told, the use of each from the right curb."""
     total, rest = _total(items)
     elements = _elements(rest, total)
@@ -149,7 +147,7 @@ def _rest(elements: list[tuple[Uses, int]], spare: int) -> list[tuple[Uses, int]
     return [(frozenset(used), 1) for used in rest]
 
 
-def _total(items: list[Item]) -> tuple[int | None, list[Item]]:
+def _total(items: list[LaneItem]) -> tuple[int | None, list[LaneItem]]:
     """The number of all lanes where one comes before the list of what they are for, and the list."""
     first, *rest = items
     if len(first.uses) == 1 and first.count > 1 and rest and all(i.bare for i in rest) and first.count == 1 + len(rest):
@@ -163,11 +161,11 @@ def _total(items: list[Item]) -> tuple[int | None, list[Item]]:
     return None, items
 
 
-def _fits(total: int, items: list[Item]) -> bool:
+def _fits(total: int, items: list[LaneItem]) -> bool:
     return sum(item.count for item in items) == total and total > 1
 
 
-def _elements(items: list[Item], total: int | None) -> list[tuple[Uses, int]]:
+def _elements(items: list[LaneItem], total: int | None) -> list[tuple[Uses, int]]:
     """Uses and number of each kind of lane; "straight and right" are uses of one lane unless the total needs two."""
     split = [(frozenset(item.uses), item.count) for item in items]
     if total is not None and sum(n for _, n in split) == total:

@@ -11,22 +11,22 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from sgcad_core.reading.junctions.approach_clauses import Clause, Clauses
-from sgcad_core.reading.junctions.approach_items import Item, Token, lane_uses, tokens
+from sgcad_core.reading.junctions.approach_clauses import ClauseCutter, LaneClause
+from sgcad_core.reading.junctions.approach_items import ApproachToken, LaneItem, lane_uses, tokens
 from sgcad_core.reading.junctions.approach_marks import (
     ALL,
     APART,
     MAIN,
     ROADS,
     STEM,
-    Mark,
-    Marks,
+    LegReference,
+    LegReferences,
     bearing_of,
     road_names,
 )
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.text.compass import COMPASS, compass_of, turned
 from sgcad_core.records.specs import Compass, Turn
@@ -44,7 +44,7 @@ class Approach:
     lanes_out: int | None = None
     turns_in: tuple[Turn, ...] = ()
     """The use of each lane that comes in, from the right curb, where turn lanes are told."""
-    cue: Cue | None = field(default=None, compare=False, repr=False)
+    source: Source | None = field(default=None, compare=False, repr=False)
     """The sentence that tells the lanes that come in, else those that go out."""
 
     def over(self, other: Approach) -> Approach:
@@ -55,7 +55,7 @@ class Approach:
             self.lanes_in if own else other.lanes_in,
             self.lanes_out if self.lanes_out is not None else other.lanes_out,
             self.turns_in or (other.turns_in if alike or not own else ()),
-            (self.cue if own else other.cue) or self.cue or other.cue,
+            (self.source if own else other.source) or self.source or other.source,
         )
 
 
@@ -101,11 +101,11 @@ class Approaches:
         return sides[0] if len(sides) == 1 and len(self.legs) == 3 else None
 
 
-def approaches_of(told: Iterable[Statement]) -> Approaches:
+def approaches_of(statements: Iterable[Statement]) -> Approaches:
     """What the text lists of its approaches; nothing where it lists none."""
-    told = [*told]
-    reader = _Reader(road_names([t.text for t in told]))
-    for t in told:
+    statements = [*statements]
+    reader = _Reader(road_names([t.text for t in statements]))
+    for t in statements:
         if t.role not in _NO_CLAUSE:
             reader.sentence(t.text, t.number)
     return reader.result()
@@ -115,7 +115,7 @@ class _Reader:
     """Takes sentence after sentence."""
 
     def __init__(self, names: Mapping[str, Compass]) -> None:
-        self.marks = Marks(names)
+        self.marks = LegReferences(names)
         self.found: dict[str, Approach] = {}
         self.listed: set[str] = set()
         """Keys of which a list is told, not just a number of lanes; without one nothing counts."""
@@ -149,39 +149,39 @@ class _Reader:
         kinds = {part.kind for part in parts}
         others = "lanes" not in kinds and rule("approaches.signs").search(text)
         if kinds & {"lanes", "which", "use", "same"} and not others:
-            for clause in Clauses(self.marks, text, bool(self.found)).read(parts):
-                self._take(clause, Cue(number, "", "approaches.lanes"))
+            for clause in ClauseCutter(self.marks, text, bool(self.found)).read(parts):
+                self._take(clause, Source(number, "", "approaches.lanes"))
         else:
             self._scopes(parts)
 
-    def _scopes(self, parts: Sequence[Token]) -> None:
+    def _scopes(self, parts: Sequence[ApproachToken]) -> None:
         """Note of which road a sentence without lanes speaks."""
         for part in parts:
             if part.kind in ("legs", STEM, *ROADS):
                 self.marks.mark = self.marks.of(part) or self.marks.mark
 
     # -------------------------------------------------------------- what it means
-    def _take(self, clause: Clause, cue: Cue) -> None:
-        told = self._copied(clause) if clause.source or self._as_before(clause) else _told(clause)
+    def _take(self, clause: LaneClause, source: Source) -> None:
+        told = self._copied(clause) if clause.copied_from or self._as_before(clause) else _told(clause)
         for key, approach in told.items():
             items = [item for item in clause.items if key in dict(_whose(clause.mark, item))]
             self._weigh(clause.mark, key, items, approach)
-            self.found[key] = self.found.get(key, Approach()).over(replace(approach, cue=cue))
+            self.found[key] = self.found.get(key, Approach()).over(replace(approach, source=source))
             if approach.lanes_in is not None:
                 self.last = approach
 
-    def _as_before(self, clause: Clause) -> bool:
+    def _as_before(self, clause: LaneClause) -> bool:
         """Whether lanes are told to be the same, and no more than their number is told again."""
         alike = (item.plain and item.count == self.last.lanes_in for item in clause.items)
         return clause.same and all(alike)
 
-    def _copied(self, clause: Clause) -> dict[str, Approach]:
+    def _copied(self, clause: LaneClause) -> dict[str, Approach]:
         """What comes in on other legs, or on those told last, comes in on these."""
-        keys = clause.source.keys if clause.source else ()
+        keys = clause.copied_from.keys if clause.copied_from else ()
         known = next((self.found[key] for key in keys if key in self.found), None) if keys else self.last
         return {key: replace(known, lanes_out=None) for key in clause.mark.keys} if known else {}
 
-    def _weigh(self, mark: Mark, key: str, items: list[Item], approach: Approach) -> None:
+    def _weigh(self, mark: LegReference, key: str, items: list[LaneItem], approach: Approach) -> None:
         """Note whether what is told of a leg is a list, and whether the leg is named."""
         turning = any({"L", "R"} & {*item.uses} for item in items)
         whole = approach.lanes_in is not None and approach.lanes_out is not None
@@ -192,10 +192,10 @@ class _Reader:
             self.named.add(key)
 
 
-def _told(clause: Clause) -> dict[str, Approach]:
+def _told(clause: LaneClause) -> dict[str, Approach]:
     """Key -> lanes, of what a clause lists."""
     told: dict[str, Approach] = {}
-    groups: dict[str, list[Item]] = {}
+    groups: dict[str, list[LaneItem]] = {}
     for item in clause.items:
         for key, way in _whose(clause.mark, item):
             if way in ("out", "both"):
@@ -209,7 +209,7 @@ def _told(clause: Clause) -> dict[str, Approach]:
     return told
 
 
-def _whose(mark: Mark, item: Item) -> Iterator[tuple[str, Literal["in", "out", "both"]]]:
+def _whose(mark: LegReference, item: LaneItem) -> Iterator[tuple[str, Literal["in", "out", "both"]]]:
     """Keys of the legs that an item is of, and which way its lanes lead."""
     way = compass_of(item.toward) if item.toward else None
     if way is None:

@@ -1,11 +1,11 @@
-"""Whose lanes a part of a sentence tells: legs, directions of travel, roads by name, "every leg"."""
+"""The legs that a part of a sentence refers to: legs, directions of travel, roads by name, "every leg"."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from sgcad_core.reading.junctions.approach_items import Token
+from sgcad_core.reading.junctions.approach_items import ApproachToken
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.text.compass import COMPASS, compass_of, turned
@@ -17,55 +17,57 @@ APART = (ALL, STEM, MAIN)
 ROADS = ("axis", "named", "other", "main")
 """Kinds of parts that name a road, both of its legs."""
 KINDS = ("legs", "ways", "every", "each", "stem", "place", "unknown", *ROADS)
-"""Kinds of parts that say whose lanes are told."""
+"""Kinds of parts that name the legs of told lanes."""
 
 
 @dataclass
-class Mark:
-    """Whose lanes: keys are bearings, "axis N", "all" or "stem"; `toward`: told by directions of travel."""
+class LegReference:
+    """Legs: keys are bearings, "axis N", "all" or "stem"; `toward`: told by directions of travel."""
 
     keys: tuple[str, ...] = ()
     toward: bool = False
 
     @property
     def axis(self) -> Compass | None:
+        """The one axis of the legs; None of several."""
         axes = {axis_of(bearing_of(key)) for key in self.keys if key not in APART}
         return next(iter(axes)) if len(axes) == 1 else None
 
 
 def bearing_of(key: str) -> Compass:
+    """The bearing in a key: "N" of "N" and of "axis N"."""
     return next(c for c in COMPASS if c == key.removeprefix("axis "))
 
 
 @dataclass
-class Marks:
+class LegReferences:
     """The mark that holds while a text is read. `names`: roads by name, with their axes."""
 
     names: Mapping[str, Compass]
-    mark: Mark = field(default_factory=Mark)
+    mark: LegReference = field(default_factory=LegReference)
     scope: Compass | None = None
     """The axis that was told last."""
 
-    def of(self, part: Token) -> Mark | None:
+    def of(self, part: ApproachToken) -> LegReference | None:
         """The mark that a part makes; None where it makes none."""
-        found = self._legs(part) or self._road(part) or (Mark((ALL,)) if part.kind in _SOME else None)
+        found = self._legs(part) or self._road(part) or (LegReference((ALL,)) if part.kind in _SOME else None)
         if found is not None:
             self.scope = found.axis or self.scope
         return found
 
-    def _legs(self, part: Token) -> Mark | None:
+    def _legs(self, part: ApproachToken) -> LegReference | None:
         words = part.match.groupdict()
         if part.kind in ("legs", "place"):
-            return Mark(tuple(points(words["list"])))
+            return LegReference(tuple(points(words["list"])))
         if part.kind == "ways":
-            return Mark(tuple(turned(w, 180) for w in points(words["list"] or words["list2"])), toward=True)
+            return LegReference(tuple(turned(w, 180) for w in points(words["list"] or words["list2"])), toward=True)
         if part.kind == "leading":
-            return Mark(tuple(turned(w, 180) for w in points(words["way"])), toward=True)
+            return LegReference(tuple(turned(w, 180) for w in points(words["way"])), toward=True)
         if part.kind in (STEM, MAIN):
-            return Mark((part.kind,))
-        return Mark() if part.kind == "unknown" else None
+            return LegReference((part.kind,))
+        return LegReference() if part.kind == "unknown" else None
 
-    def _road(self, part: Token) -> Mark | None:
+    def _road(self, part: ApproachToken) -> LegReference | None:
         axis: Compass | None = None
         if part.kind == "axis":
             axis = _axis(part)
@@ -77,9 +79,9 @@ class Marks:
             words = part.match.groupdict()
             name = self._known(words.get("of")) or self._known(words.get("name"))
             if name is None and self.mark.keys == (MAIN,):
-                return Mark((MAIN,))
+                return LegReference((MAIN,))
             axis = self.names[name] if name else self.mark.axis or self.scope
-        return Mark((f"axis {axis}",)) if axis else None
+        return LegReference((f"axis {axis}",)) if axis else None
 
     def _known(self, words: str | None) -> str | None:
         return next((name for name in _forms(words) if name in self.names), None) if words else None
@@ -88,7 +90,7 @@ class Marks:
 _SOME = ("every", "each", "each_way")
 
 
-def _axis(part: Token) -> Compass | None:
+def _axis(part: ApproachToken) -> Compass | None:
     one, two = compass_of(part.match["one"]), compass_of(part.match["two"])
     return axis_of(one) if one and two and axis_of(one) == axis_of(two) and one != two else None
 

@@ -25,8 +25,8 @@ from sgcad_core.reading.junctions.junction_stem import (
 )
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import DRIVES, Cue
-from sgcad_core.reading.roads.road_merge import GatheredRoad
+from sgcad_core.reading.motion.motion_record import DRIVES, Source
+from sgcad_core.reading.roads.road_merge import MergedRoad
 from sgcad_core.reading.roads.work_zones_openings import MEDIAN_OPENING, in_gores
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 from sgcad_core.records.specs import Compass
@@ -51,43 +51,41 @@ class JunctionFacts:
     skew_deg: int = 0
     offset: bool = False
     notes: tuple[str, ...] = field(default=())
-    where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
+    where: Mapping[str, Source] = field(default_factory=dict, compare=False, repr=False)
     """Where kind, control and stem were read, as far as they were."""
 
 
 _NAMED = tuple((record, rule(record.rule)) for record in JUNCTIONS if record.rule)
 _JUNCTION = rule("junction.junction")
-_NO_JUNCTION = rule("junction.no_junction")
 _SKEWED, _OFFSET = rule("junction.skewed"), rule("junction.offset")
 _SKEW_DEG, _MOST_SKEW_DEG = 30, 40
 """Where no angle is told: AASHTO calls 60 degrees the least that a junction should have."""
 CIRCLE_LANES = rule("junction.roundabout_lanes")
-_CIRCLE_LANE = rule("junction.roundabout_lane")
 
 
 def junction_of(
-    told: Sequence[Statement],
+    statements: Sequence[Statement],
     vehicles: Sequence[VehicleFacts],
-    roads: Sequence[GatheredRoad],
+    roads: Sequence[MergedRoad],
     approaches: Approaches | None = None,
 ) -> JunctionFacts:
     """The junction that the story tells or that the vehicles' paths need; kind "none" on a plain road."""
     listed = approaches or Approaches()
-    story = [t for t in told if t.role in STORY_ROLES]
-    heard = [t for t in told if t.role in STORY_ROLES or t.role == "interview"]
+    story = [t for t in statements if t.role in STORY_ROLES]
+    heard = [t for t in statements if t.role in STORY_ROLES or t.role == "interview"]
     if _named(story)[0] == "none" and (_named(heard)[0] != "none" or _one_sided(heard, roads)):
         story = heard
-    kind, stated = _kind(story, told, vehicles, roads)
+    kind, stated = _kind(story, statements, vehicles, roads)
     kind = _kind_listed(kind, stated, listed)
     if kind == "none":
         return JunctionFacts(stated=stated)
-    control, control_at = control_of(told)
+    control, control_at = control_of(statements)
     record = junction_kind(kind)
     if record.legs == 2:
         return JunctionFacts(kind, stated=stated, where=_where(kind=_named(story)[1]))
     where = _where(kind=_named(story)[1] if record.rule else None, control=control_at)
     signed = control in ("stop", "yield", "flashing")
-    halted = signed_legs(told, vehicles, roads, record.crossing) if signed else ()
+    halted = signed_legs(statements, vehicles, roads, record.crossing) if signed else ()
     if record.crossing:
         around = _circle_lanes(story) if record.round else None
         offset = any(_OFFSET.search(t.text) for t in story)
@@ -104,16 +102,16 @@ def junction_of(
     return JunctionFacts(kind, stem, control, halted, stated, said is not None, skew_deg=skew, where=where)
 
 
-def _where(**cues: Cue | None) -> dict[str, Cue]:
-    return {name: cue for name, cue in cues.items() if cue}
+def _where(**cues: Source | None) -> dict[str, Source]:
+    return {name: source for name, source in cues.items() if source}
 
 
 # ------------------------------------------------------------------ kind
 def _kind(
     story: Sequence[Statement],
-    told: Sequence[Statement],
+    statements: Sequence[Statement],
     vehicles: Sequence[VehicleFacts],
-    roads: Sequence[GatheredRoad],
+    roads: Sequence[MergedRoad],
 ) -> tuple[JunctionKind, bool]:
     named = _named(story)[0]
     access = any(v.origin in DRIVES or v.target in DRIVES for v in vehicles)
@@ -148,27 +146,27 @@ def _kind_listed(kind: JunctionKind, stated: bool, listed: Approaches) -> Juncti
 
 
 def _access_kind(vehicles: Sequence[VehicleFacts]) -> JunctionKind:
-    """What joins the street where vehicles come out or turn in: an alley, if nobody uses anything else."""
+    """The kind of access that vehicles leave or enter: an alley, if no other access is used."""
     used = {place for v in vehicles for place in (v.origin, v.target) if place in DRIVES}
     return ALLEY if used == {ALLEY} else DRIVEWAY
 
 
-def _named(story: Sequence[Statement]) -> tuple[JunctionKind | Literal["some"], Cue | None]:
+def _named(story: Sequence[Statement]) -> tuple[JunctionKind | Literal["some"], Source | None]:
     """The first junction kind that the story names, and where; "some" if it only says intersection."""
-    some: Cue | None = None
+    some: Source | None = None
     for t in story:
-        text = MEDIAN_OPENING.sub(" ", _NO_JUNCTION.sub(" ", t.text))
+        text = MEDIAN_OPENING.sub(" ", rule("junction.no_junction").sub(" ", t.text))
         found = [(match, words, record) for record, words in _NAMED if (match := words.search(text))]
         if found:
             first, words, record = min(found, key=lambda place: place[0].start())
-            return record.kind, Cue(t.number, first[0], words.id)
+            return record.kind, Source(t.number, first[0], words.id)
         plain = _JUNCTION.search(text)
-        some = some or (Cue(t.number, plain[0], _JUNCTION.id) if plain else None)
+        some = some or (Source(t.number, plain[0], _JUNCTION.id) if plain else None)
     return "some" if some else "none", some
 
 
 def _skew_deg(story: Sequence[Statement]) -> int:
-    """By how much the crossing road misses the right angle; 0 where the story tells of none."""
+    """Degrees by which the crossing road misses the right angle; 0 where none are told."""
     match = next((m for t in story if (m := _SKEWED.search(t.text))), None)
     if match is None:
         return 0
@@ -179,25 +177,25 @@ def _circle_lanes(story: Sequence[Statement]) -> int | None:
     """How many lanes go around in a roundabout, where the story tells it."""
     if match := next((m for t in story if (m := CIRCLE_LANES.search(t.text))), None):
         return 1 if match["one"] else 2
-    return 2 if any(_CIRCLE_LANE.search(t.text) for t in story) else None
+    return 2 if any(rule("junction.roundabout_lane").search(t.text) for t in story) else None
 
 
-def _ramp_used(vehicles: Sequence[VehicleFacts], roads: Sequence[GatheredRoad]) -> bool:
+def _ramp_used(vehicles: Sequence[VehicleFacts], roads: Sequence[MergedRoad]) -> bool:
     """Whether a vehicle comes on a ramp."""
     return any(v.origin == RAMP for v in vehicles) or any(r.kind == RAMP and r.vehicles for r in roads)
 
 
-def _merging(story: Sequence[Statement], roads: Sequence[GatheredRoad]) -> bool:
+def _merging(story: Sequence[Statement], roads: Sequence[MergedRoad]) -> bool:
     text = " ".join(t.text for t in story)
     return bool(rule("junction.merging").search(text)) or any(r.kind == "freeway" for r in roads)
 
 
 _RAMP_JOINS, _DRIVE_NAMED = rule("junction.ramp_joins"), rule("junction.drive_named")
 _SIDE_STREET = rule("junction.side_street")
-"""A turn that somebody makes, means or waits to make, into a road that needs a junction."""
+"""A turn that is made, meant or waited for, into a road that needs a junction."""
 
 
-def _one_sided(story: Sequence[Statement], roads: Sequence[GatheredRoad]) -> bool:
+def _one_sided(story: Sequence[Statement], roads: Sequence[MergedRoad]) -> bool:
     """Whether a side road is told to lie on one side or to end."""
     ends = rule("junction.ends_at")
     return any(

@@ -9,17 +9,14 @@ from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.inference.inference_state import QUARTER_DEG
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import DRIVES, Cue
+from sgcad_core.reading.motion.motion_record import DRIVES, Source
 from sgcad_core.reading.roads.road_mentions import axis_of
-from sgcad_core.reading.roads.road_merge import GatheredRoad
+from sgcad_core.reading.roads.road_merge import MergedRoad
 from sgcad_core.reading.text.compass import between, compass_of, turned
 from sgcad_core.records.specs import Compass
 
-_NUMBERED = rule("common.vehicle_begins")
 SIDE_ROAD = rule("junction.side_road")
 ENDS = rule("junction.ends")
-_TURN_SIDE = rule("junction.turn_side")
-_DRIVE_SIDE = rule("junction.drive_side")
 BESIDE = (*DRIVES, RAMP, "side_road")
 """Where vehicles come from that come in by the stem."""
 
@@ -28,7 +25,7 @@ def stem_of(
     kind: JunctionKind,
     story: Sequence[Statement],
     vehicles: Sequence[VehicleFacts],
-    roads: Sequence[GatheredRoad],
+    roads: Sequence[MergedRoad],
     halted: Sequence[Compass],
     lead: Compass | None,
 ) -> Compass | None:
@@ -70,15 +67,19 @@ def _stem_meant(story: Sequence[Statement], vehicles: Sequence[VehicleFacts]) ->
     """The side that a vehicle waited, slowed or meant to turn to."""
     for v in sorted(vehicles, key=lambda v: v.target is None):
         for t in story:
-            turn = _TURN_SIDE.search(t.text)
+            turn = rule("junction.turn_side").search(t.text)
             mine = v.id in rule("common.vehicle").findall(t.text[: turn.start()])[-1:] if turn else False
-            if turn and v.heading and (mine or (t.subject == v.id and not _NUMBERED.search(t.text[: turn.start()]))):
+            if (
+                turn
+                and v.heading
+                and (mine or (t.subject == v.id and not rule("common.vehicle_begins").search(t.text[: turn.start()])))
+            ):
                 return turned(v.heading, -90 if (turn["a"] or turn["b"]).lower() == "left" else 90)
     return None
 
 
 def _on_stem(known: Sequence[VehicleFacts], halted: Sequence[Compass]) -> VehicleFacts:
-    """Of vehicles on two axes the one on the ending leg: it turns, or it has the sign."""
+    """The vehicle on the ending leg, of vehicles on two axes: it turns, or it has the sign."""
 
     def likely(v: VehicleFacts) -> tuple[bool, bool, bool]:
         turns = v.maneuver in ("turn_left", "turn_right")
@@ -88,7 +89,7 @@ def _on_stem(known: Sequence[VehicleFacts], halted: Sequence[Compass]) -> Vehicl
 
 
 def contradicted(stem: Compass, vehicles: Sequence[VehicleFacts]) -> bool:
-    """Whether a vehicle is told to come from where, with that stem, there is no road."""
+    """Whether a vehicle is told to come from a leg that does not exist with that stem."""
     told = [v for v in vehicles if v.heading and v.heading_stated]
     if any(v.heading == stem and v.maneuver not in ("turn_left", "turn_right") for v in told):
         return True
@@ -107,24 +108,25 @@ def crossing(vehicles: Sequence[VehicleFacts]) -> bool:
 
 def stem_told(
     story: Sequence[Statement], vehicles: Sequence[VehicleFacts], lead: Compass | None, only_compass: bool = False
-) -> tuple[Compass, Cue] | None:
+) -> tuple[Compass, Source] | None:
+    """The bearing of the stem that the story tells by compass or, unless `only_compass`, by hand; and where."""
     for t in story:
         ends = ENDS.search(t.text)
         way = compass_of(ends["dir"]) if ends and ends["dir"] and rule("junction.junction").search(t.text) else None
         if ends and way:
-            return turned(way, 180), Cue(t.number, ends["dir"], ENDS.id)
-        place = SIDE_ROAD.search(t.text) or _DRIVE_SIDE.search(t.text)
+            return turned(way, 180), Source(t.number, ends["dir"], ENDS.id)
+        place = SIDE_ROAD.search(t.text) or rule("junction.drive_side").search(t.text)
         if place:
             word = next(filter(None, place.groups()))
             found = _bearing(word, t, vehicles, lead)
             if found and not (only_compass and word.lower() in ("left", "right")):
-                return found, Cue(t.number, word, "junction.side_road")
+                return found, Source(t.number, word, "junction.side_road")
     return None
 
 
-def _bearing(word: str, told: Statement, vehicles: Sequence[VehicleFacts], lead: Compass | None) -> Compass | None:
+def _bearing(word: str, statement: Statement, vehicles: Sequence[VehicleFacts], lead: Compass | None) -> Compass | None:
     """A compass point as it stands; left and right as the sentence's vehicle (or the first) heads."""
     if word.lower() not in ("left", "right"):
         return compass_of(word)
-    own = next((v.heading for v in vehicles if v.id == told.subject and v.heading), lead)
+    own = next((v.heading for v in vehicles if v.id == statement.subject and v.heading), lead)
     return turned(own, -90 if word.lower() == "left" else 90) if own else None

@@ -11,11 +11,11 @@ from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 
 
-def unsupported_places(told: Iterable[Statement]) -> tuple[str, ...]:
+def unsupported_places(statements: Iterable[Statement]) -> tuple[str, ...]:
     """Kinds of `kinds.UNSUPPORTED` at which the sentences of the story put the crash or a vehicle of it, in the order
     of the text; none for what is only mentioned."""
     meaning = values("unsupported_place")
-    story = [t.text for t in told if t.role in STORY_ROLES]
+    story = [t.text for t in statements if t.role in STORY_ROLES]
     found = [rule.search(text) for text in story for rule in of_role("unsupported")]
     return tuple(dict.fromkeys(meaning[match["place"].lower()] for match in found if match))
 

@@ -1,6 +1,6 @@
 """All word classes and rules as one immutable value, and patterns with their slots filled. Reads the data files.
 
-A `Language` can be made with changed records, which is how tests try one with faults in it.
+Tests make a `Language` with changed records.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Language:
         return found | dict(own.words)
 
     def slot(self, name: str, file: str = "vocabulary", record: str = "") -> str:
-        """The pattern that a slot stands for, as one group. `file` and `record`: who asks, for the error."""
+        """The pattern that a slot stands for, as one group. `file` and `record`: the asking record, for the error."""
         own = self._class(name, file, record or name)
         if own.pattern is not None:
             return f"(?:{own.pattern})"
@@ -96,6 +96,16 @@ def vocabulary() -> Language:
             raise fault(file, name, f"{classes[name].file} has a class of that name", "give one of both another name")
         classes[name] = word_class(file, name, record)
     return Language(classes, {})
+
+
+def words(name: str) -> tuple[str, ...]:
+    """The words of a class in the order of the file. Raises ConfigError where there is no such class."""
+    return tuple(vocabulary().values(name))
+
+
+def values(name: str) -> dict[str, Any]:
+    """Word -> meaning of a class: "northeast" -> "NE" of compass."""
+    return vocabulary().values(name)
 
 
 def _records(folder: Path) -> list[tuple[str, str, object]]:

@@ -31,8 +31,8 @@ def answered_layout(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
 
 
 def short_of_told(facts: RoadFacts, ours: RoadLayout, answered: RoadLayout) -> frozenset[str]:
-    """Axes of streets that the answer draws with less than the text tells and ours has: with fewer lanes than are
-    counted of an undivided one, or without turn lanes that are named.
+    """Axes of streets that the answer draws with less than the text tells: fewer lanes than are counted of an undivided
+    street, or without turn lanes that are named.
 
     More lanes are no contradiction: turn lanes at the junction may stand beside those that are named.
     """
@@ -69,12 +69,12 @@ def _most(layout: RoadLayout, axis: str) -> int:
 
 
 def carries(layout: RoadLayout, crash: CrashFacts) -> bool:
-    """Whether everybody who moves can come in as they head, and go out where they turn to."""
+    """Whether every moving vehicle can come in as it heads, and go out where it turns to."""
     ways_in = {leg.bearing for leg in layout.legs if leg.lanes_in}
     ways_out = {leg.bearing for leg in layout.legs if leg.lanes_out}
     comes = {turned(v.heading, 180) for v in crash.vehicles if v.heading and v.maneuver != "backing"}
     goes = {v.exit_heading for v in crash.vehicles if v.exit_heading}
-    both = ways_in | ways_out  # who is on the wrong side comes in where others go out
+    both = ways_in | ways_out  # a vehicle on the wrong side comes in where others go out
     return comes <= both and goes <= both
 
 

@@ -24,7 +24,7 @@ from sgcad_core.reading.layout.layout_places import (
     with_opening,
 )
 from sgcad_core.reading.motion.motion_record import DRIVES
-from sgcad_core.reading.roads.carriageway import Carriageway, Way, carriageway
+from sgcad_core.reading.roads.carriageway import Carriageway, DirectionLanes, carriageway
 from sgcad_core.reading.roads.lanes import LaneFacts
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
 from sgcad_core.reading.roads.road_mentions import axis_of
@@ -58,6 +58,7 @@ class _Builder:
     defaults: Defaults
 
     def layout(self) -> RoadLayout:
+        """The whole layout, places and answered values laid over the roads."""
         roads = answered_layout(self.facts, with_approaches(self.facts, self._roads_alone()))
         return with_opening(self.facts, with_closed(self.facts, with_edges(self.facts, roads)))
 
@@ -230,7 +231,7 @@ def _plain_leg(leg: Leg, lanes: Carriageway, bearing: Compass, ends: tuple[Compa
     return leg.model_copy(update={"lanes_in": inward, "lanes_out": outward})
 
 
-def _facing(lanes: Carriageway, coming: Way, going: Way) -> int:
+def _facing(lanes: Carriageway, coming: DirectionLanes, going: DirectionLanes) -> int:
     """Lanes towards the hub on the leg that faces a leg with a left-turn lane: the road keeps its total.
 
     Where both directions have left-turn lanes, each leg has its own and the total counts both.
@@ -239,7 +240,7 @@ def _facing(lanes: Carriageway, coming: Way, going: Way) -> int:
     return (lanes.total or 0) - going.through if facing else 0
 
 
-def _turns(way: Way, lanes_in: int) -> tuple[Turn, ...]:
+def _turns(way: DirectionLanes, lanes_in: int) -> tuple[Turn, ...]:
     """Lane uses from the right curb where turn lanes are known; the links fill what no exit serves."""
     left, right = way.left_turn, way.right_turn
     middle = way.approach - left - right

@@ -84,11 +84,12 @@ def with_opening(facts: RoadFacts, layout: RoadLayout) -> RoadLayout:
 def parking_lot(facts: RoadFacts, axis: Compass) -> RoadLayout:
     """An aisle with stalls on both sides; two that cross where vehicles are told to come along both.
 
-    Who backs out of a stall or is parked stands square to the aisle: where nobody drives along it his heading tells it.
+    A vehicle that is parked or backs out of a stall stands square to the aisle: its heading tells the axis of the aisle
+    where no other vehicle drives along it.
     """
     told = [(v.maneuver, v.heading) for v in facts.crash.vehicles if v.heading and v.heading_stated]
-    driven = [axis_of(heading) for did, heading in told if did not in ("parked", "backing")]
-    stalled = [heading for stands in ("backing", "parked") for did, heading in told if did == stands]
+    driven = [axis_of(heading) for maneuver, heading in told if maneuver not in ("parked", "backing")]
+    stalled = [heading for stands in ("backing", "parked") for maneuver, heading in told if maneuver == stands]
     square = [axis_of(turned(heading, 90)) for heading in stalled]
     across = axis in map(axis_of, stalled) and axis not in driven
     first = [] if across else [axis]

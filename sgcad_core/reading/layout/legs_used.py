@@ -22,10 +22,10 @@ OFF_ROAD = (*DRIVES, RAMP, "shoulder")
 def legs_used(facts: RoadFacts, faced: bool = False) -> tuple[Compass, ...]:
     """Bearings of legs that vehicles come from, or turn into, by headings and turns that the text states.
 
-    One that goes straight on needs no leg ahead: it may have been struck before; two that cross each other's way where
-    four legs are told do. The road that a driveway meets goes on to both sides, and a stem lies where the text says.
-    `faced`: also of those whose heading nobody tells, where their turn and the sides that touched do, and of those that
-    cross at a junction of which nobody says how many legs it has.
+    A vehicle that goes straight on needs no leg ahead: it may have been struck before. Two that cross each other's way
+    where four legs are told do. The road that a driveway meets goes on to both sides, and a stem lies where the text
+    says. `faced`: also legs of vehicles whose heading follows from their turn and the sides that touched, and of
+    vehicles that cross at a junction without a told number of legs.
     """
     junction, crash = facts.junction, facts.crash
     legs: list[Compass] = [junction.stem] if junction.stem and junction.stem_stated else []

@@ -43,7 +43,7 @@ def apart(a_rad: float, b_rad: float) -> float:
 def ways_of(spec: RoadSpec) -> tuple[Way, ...]:
     """Every direction with at least one lane, in the order of the roads.
 
-    A roundabout is one node, and its pieces are no ways: one drives through it as across a junction.
+    A roundabout is one node, and its pieces are no ways: a vehicle drives through it as across a junction.
     """
     center = centers(spec)
     at = {node.id: (node.x_m, node.y_m) for node in spec.nodes}

@@ -12,16 +12,23 @@ from sgcad_core.reading.motion.motion_record import DRIVES
 from sgcad_core.reading.roads.road_mentions import RoadMention, axis_of
 from sgcad_core.reading.text.compass import between, compass_of, turned
 
-_PLACE = rule("roads.place")
 
-
-def oriented(crash: CrashFacts, mentions: tuple[RoadMention, ...], told: tuple[Statement, ...]) -> CrashFacts:
+def turned_to_roads(
+    crash: CrashFacts, mentions: tuple[RoadMention, ...], statements: tuple[Statement, ...]
+) -> CrashFacts:
     """Headings that are only relative to one another, turned so that V1 drives on the road and in the lanes told."""
     streets = [m for m in mentions if m.axis and m.kind not in JOINING]
     joined = [m for m in streets if m.relation == "other"] if any(m.kind == RAMP for m in mentions) else []
     axis = next((m.axis for m in joined + streets), None)
     lead = next((v for v in crash.vehicles if v.heading and v.origin not in (*DRIVES, RAMP)), None)
-    place = next((m for t in told if t.role in ("opening", "impact", "road") and (m := _PLACE.search(t.text))), None)
+    place = next(
+        (
+            m
+            for t in statements
+            if t.role in ("opening", "impact", "road") and (m := rule("roads.place").search(t.text))
+        ),
+        None,
+    )
     told_way = compass_of(place[1]) if place else None
     told_way = told_way if told_way and axis in (None, axis_of(told_way)) else None
     way = told_way or axis

@@ -1,8 +1,8 @@
-"""Whose deed is it: resolved sentences cut into segments, each with the vehicles that are its subject.
+"""Resolved sentences cut into segments, each with the vehicles that are its subject.
 
-A segment runs from one subject to the next. A mention is a subject where a verb follows it and no
-preposition stands before it ("behind V2", "struck V2"), or where a relative clause or participle begins
-("V2, which was stopped"). Pronouns take the subject of the sentence before. Knows no motion words.
+A segment runs from one subject to the next. A mention is a subject where a verb follows it and no preposition stands
+before it ("behind V2", "struck V2"), or where a relative clause or participle begins ("V2, which was stopped").
+Pronouns take the subject of the sentence before. Knows no motion words.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from sgcad_core.reading.actors.drivers import NOBODY, drivers
+from sgcad_core.reading.actors.drivers import NO_DRIVERS, drivers
 from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.text.normalise import NUMBERS, Role, Sentence
@@ -45,35 +45,28 @@ class Statement(NamedTuple):
 
 _SUBJECT = rule("clauses.subject")
 _VERB = rule("clauses.verb")
-_PARTICIPLE = rule("clauses.participle")
-_PREPOSITION = rule("clauses.preposition")
-_STANDS_BESIDE = rule("clauses.stands_beside")
-_RESUMES = rule("clauses.resumes")
-_ASIDE = rule("clauses.aside")
 _BESIDE = rule("clauses.beside")
-_REPORTS = rule("clauses.reports")
-_DRIVER_OF = rule("clauses.driver_of")
 _PRONOUN = rule("clauses.pronoun")
 
 
-def tell(sentences: Iterable[Sentence], who: Roster) -> tuple[Statement, ...]:
+def resolve_sentences(sentences: Iterable[Sentence], roster: Roster) -> tuple[Statement, ...]:
     """Sentences with vehicles resolved; "the other vehicle" and "this vehicle" follow the subject."""
     told: list[Statement] = []
     current: str | None = None
     several = True
     sentences = tuple(sentences)
-    resolved = [who.resolve(s.text) for s in sentences]
-    called = NOBODY if who.counted else drivers(resolved, who)
+    resolved = [roster.resolve(s.text) for s in sentences]
+    called = NO_DRIVERS if roster.counted else drivers(resolved, roster)
     for s, text in zip(sentences, resolved, strict=True):
-        text = text if who.counted else called.resolve(text)
-        text = _others(text, who, current, s.role)
+        text = text if roster.counted else called.resolve(text)
+        text = _others(text, roster, current, s.role)
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
-        # one account in order: nobody is at rest for good before the blow, or asked of his health
+        # one account in order: no vehicle is at rest for good before the contact
         early = role in ("rest", "health") and all(t.role != "impact" for t in told)
         before = role == "other" and _begins_with_somebody(text) and all(t.role != "impact" for t in told)
-        if before or (who.counted and (early or (role == "other" and _SUBJECT.search(text)))):
+        if before or (roster.counted and (early or (role == "other" and _SUBJECT.search(text)))):
             role = "approach"
-        earlier, current = current, _main_subject(text, current, role, who)
+        earlier, current = current, _main_subject(text, current, role, roster)
         told.append(Statement(text, role, s.number, current, several, earlier))
         several = _of_several(text, several)
     return tuple(told)
@@ -85,7 +78,7 @@ def _begins_with_somebody(text: str) -> bool:
 
 
 def _of_several(text: str, before: bool) -> bool:
-    """Whether a following "they" means several vehicles: the last subject was all, a list, or nobody."""
+    """Whether a following "they" means several vehicles: the last subject was all, a list, or absent."""
     if _PRONOUN.match(text):
         return before
     if rule("clauses.everybody").search(text) or rule("clauses.list").search(text):
@@ -93,10 +86,10 @@ def _of_several(text: str, before: bool) -> bool:
     return before and not MENTION.search(text)
 
 
-def _others(text: str, who: Roster, current: str | None, role: Role) -> str:
+def _others(text: str, roster: Roster, current: str | None, role: Role) -> str:
     """ "the other vehicle" as a number, where two vehicles leave no doubt."""
-    subject = next((v for v in MENTION.findall(text) if v in who.ids), None) or current
-    other = who.other(subject) if subject else None
+    subject = next((v for v in MENTION.findall(text) if v in roster.ids), None) or current
+    other = roster.other(subject) if subject else None
     if other:
         text = rule("clauses.other_vehicle").sub(other, text)
     if current and role not in ("codes", "factors"):
@@ -104,11 +97,11 @@ def _others(text: str, who: Roster, current: str | None, role: Role) -> str:
     return text
 
 
-def _main_subject(text: str, current: str | None, role: Role, who: Roster) -> str | None:
-    """The vehicle that a pronoun in the next sentence means; a number that is no vehicle's is nobody's."""
+def _main_subject(text: str, current: str | None, role: Role, roster: Roster) -> str | None:
+    """The vehicle that a pronoun in the next sentence means; a number outside the roster counts as none."""
     if _PRONOUN.match(text) and current:
         return current
-    first = next((m for m in MENTION.finditer(text) if m[0] in who.ids), None)
+    first = next((m for m in MENTION.finditer(text) if m[0] in roster.ids), None)
     if not first:
         return current
     opening = text[: first.start()]
@@ -116,29 +109,31 @@ def _main_subject(text: str, current: str | None, role: Role, who: Roster) -> st
     return first.group() if early or current is None else current
 
 
-def segments(told: Iterable[Statement], who: Roster) -> tuple[Segment, ...]:
+def segments(statements: Iterable[Statement], roster: Roster) -> tuple[Segment, ...]:
     """Every stretch of text with its subjects, in order; text before the first subject is left out."""
     found: list[Segment] = []
-    for t in told:
-        found += _cut(t, who)
+    for t in statements:
+        found += _cut(t, roster)
     return tuple(found)
 
 
-def _cut(told: Statement, who: Roster) -> list[Segment]:
-    starts = subject_starts(told, who)
-    ends = [at for at, _, _ in starts[1:]] + [len(told.text)][: len(starts)]
+def _cut(statement: Statement, roster: Roster) -> list[Segment]:
+    starts = subject_starts(statement, roster)
+    ends = [at for at, _, _ in starts[1:]] + [len(statement.text)][: len(starts)]
     found = [
-        Segment(subjects, _own(told.text[begin:end].lower().strip(" ,"), n), told.role, told.number, begin)
+        Segment(
+            subjects, _own(statement.text[begin:end].lower().strip(" ,"), n), statement.role, statement.number, begin
+        )
         for n, ((_, begin, subjects), end) in enumerate(zip(starts, ends, strict=True))
         if subjects
     ]
-    return [*_opening(told, starts), *found, *(also for one in found for also in _alike(one, who))]
+    return [*_opening(statement, starts), *found, *(also for one in found for also in _alike(one, roster))]
 
 
-def _alike(segment: Segment, who: Roster) -> Iterator[Segment]:
-    """The same of somebody else: "V2 was southbound, and so was V1"."""
+def _alike(segment: Segment, roster: Roster) -> Iterator[Segment]:
+    """The same segment for another vehicle: "V2 was southbound, and so was V1"."""
     same = rule("clauses.so_was").search(segment.text)
-    if same and (vehicle := same["v"].upper()) in who.ids:
+    if same and (vehicle := same["v"].upper()) in roster.ids:
         yield segment._replace(subjects=(vehicle,), text=segment.text[: same.start()])
 
 
@@ -148,31 +143,33 @@ def _own(text: str, before: int) -> str:
     return text[: aside.end()] if aside else text
 
 
-def _opening(told: Statement, starts: list[tuple[int, int, tuple[str, ...]]]) -> list[Segment]:
+def _opening(statement: Statement, starts: list[tuple[int, int, tuple[str, ...]]]) -> list[Segment]:
     """What a participle tells of the subject that follows it: "While turning right, V1 was struck"."""
-    before = told.text[: starts[0][0]] if starts else ""
+    before = statement.text[: starts[0][0]] if starts else ""
     if not before or not starts[0][2] or MENTION.search(before) or not rule("clauses.opening").fullmatch(before):
         return []
-    return [Segment(starts[0][2], before.lower().strip(" ,"), told.role, told.number, 0)]
+    return [Segment(starts[0][2], before.lower().strip(" ,"), statement.role, statement.number, 0)]
 
 
-def subject_starts(told: Statement, who: Roster) -> list[tuple[int, int, tuple[str, ...]]]:
-    """(where the mention stands, where its text begins, who) of each subject."""
-    text = told.text
+def subject_starts(statement: Statement, roster: Roster) -> list[tuple[int, int, tuple[str, ...]]]:
+    """(place of the mention, begin of its text, vehicles) of each subject."""
+    text = statement.text
     starts: list[tuple[int, int, tuple[str, ...]]] = []
     pronoun = _PRONOUN.match(text)
-    if pronoun and told.subject:
-        everyone = len(who.ids) == 2 and rule("clauses.they").search(pronoun.group()) and _means_all(told, pronoun)
-        starts.append((0, pronoun.end(), who.ids if everyone else (told.subject,)))
-    elif told.subject and not MENTION.search(text) and rule("clauses.headless").match(text):
-        starts.append((0, 0, (told.subject,)))
+    if pronoun and statement.subject:
+        everyone = (
+            len(roster.ids) == 2 and rule("clauses.they").search(pronoun.group()) and _means_all(statement, pronoun)
+        )
+        starts.append((0, pronoun.end(), roster.ids if everyone else (statement.subject,)))
+    elif statement.subject and not MENTION.search(text) and rule("clauses.headless").match(text):
+        starts.append((0, 0, (statement.subject,)))
     inside = 0
     for m in _subjects(text):
         if m.start() < inside:
             continue
         inside = m.end() + _place_length(text[m.end() :])
-        subjects = _whom(m, who)
-        stranger = m.group("stranger") or (not subjects and m.group("one") in who.bystanders)
+        subjects = _whom(m, roster)
+        stranger = m.group("stranger") or (not subjects and m.group("one") in roster.bystanders)
         if (subjects or stranger) and _is_subject(text, m):
             resumed = _resumed(text, m, starts)
             starts += [(m.start(), m.end(), subjects), *resumed]
@@ -182,7 +179,7 @@ def subject_starts(told: Statement, who: Roster) -> list[tuple[int, int, tuple[s
 
 
 def _place_length(behind: str) -> int:
-    """How long the words are that say where a subject is, before its verb: who is named in them is no subject."""
+    """Length of the words that locate a subject before its verb: vehicles named in them are no subjects."""
     place = rule("clauses.located").match(behind)
     within = place is not None and "," not in place.group() and " and " not in place.group()
     return place.end() if place and within and _VERB.match(" " + behind[place.end() :]) else 0
@@ -196,7 +193,7 @@ def _resumed(
     if not before or not (beside or rule("clauses.told_aside").match(text, aside.end())):
         return []
     stop = next((m.start() for m in _SUBJECT.finditer(text, aside.end())), len(text))
-    onward = _RESUMES.search(text, aside.end(), stop)
+    onward = rule("clauses.resumes").search(text, aside.end(), stop)
     return [(onward.start(), onward.end(), before[-1][2])] if onward else []
 
 
@@ -208,45 +205,48 @@ def _subjects(text: str) -> Iterator[re.Match[str]]:
         yield (_SUBJECT.match(text, named[-1].start()) or m) if again else m
 
 
-def _means_all(told: Statement, pronoun: re.Match[str]) -> bool:
-    return told.several or bool(rule("clauses.both_behind").match(told.text[pronoun.end() :]))
+def _means_all(statement: Statement, pronoun: re.Match[str]) -> bool:
+    return statement.several or bool(rule("clauses.both_behind").match(statement.text[pronoun.end() :]))
 
 
-def _whom(match: re.Match[str], who: Roster) -> tuple[str, ...]:
+def _whom(match: re.Match[str], roster: Roster) -> tuple[str, ...]:
     if match.group("stranger"):
         return ()
     if match.group("both"):
-        if len(who.ids) > 2 and rule("clauses.the_two").match(match.group()):
-            return _last_two(match, who)
-        told = None if who.counted else rule("clauses.how_many").match(match.group())
-        return who.ids if len(who.ids) > 1 and (not told or NUMBERS[told["number"].lower()] == len(who.ids)) else ()
-    return tuple(dict.fromkeys(v for v in MENTION.findall(match.group()) if v in who.ids))
+        if len(roster.ids) > 2 and rule("clauses.the_two").match(match.group()):
+            return _last_two(match, roster)
+        told = None if roster.counted else rule("clauses.how_many").match(match.group())
+        return (
+            roster.ids
+            if len(roster.ids) > 1 and (not told or NUMBERS[told["number"].lower()] == len(roster.ids))
+            else ()
+        )
+    return tuple(dict.fromkeys(v for v in MENTION.findall(match.group()) if v in roster.ids))
 
 
-def _last_two(both: re.Match[str], who: Roster) -> tuple[str, ...]:
-    """Whom "both" means where there are more: the two that are named last before it in its sentence; all where fewer
-    than two are."""
-    named = [v for v in MENTION.findall(both.string[: both.start()]) if v in who.ids]
+def _last_two(both: re.Match[str], roster: Roster) -> tuple[str, ...]:
+    """Resolves "both" where there are more than two: the two named last before it in its sentence, else all."""
+    named = [v for v in MENTION.findall(both.string[: both.start()]) if v in roster.ids]
     last = tuple(dict.fromkeys(reversed(named)))[:2]
-    return last if len(last) > 1 else who.ids
+    return last if len(last) > 1 else roster.ids
 
 
 def _is_subject(text: str, match: re.Match[str]) -> bool:
     before = text[max(0, match.start() - 60) : match.start()]
-    behind = _ASIDE.sub("", text[match.end() :])
+    behind = rule("clauses.aside").sub("", text[match.end() :])
     if rule("clauses.driver_told").search(before) and rule("clauses.tells_of_himself").match(behind):
         return True
     if _BESIDE.search(before):
         if rule("clauses.of_neighbor").search(before) and behind.startswith(" that "):
             return False
-        return bool(rule("clauses.relative").match(behind) or _STANDS_BESIDE.match(behind))
-    if _DRIVER_OF.search(before):
+        return bool(rule("clauses.relative").match(behind) or rule("clauses.stands_beside").match(behind))
+    if rule("clauses.driver_of").search(before):
         return _acts(behind) and not (behind.startswith(" and ") and rule("clauses.touched_part").search(before))
-    if _PREPOSITION.search(before):
+    if rule("clauses.preposition").search(before):
         if rule("clauses.yielded").search(before) and rule("clauses.located_doing").match(behind):
             return True
-        reported = _REPORTS.search(before)
-        return bool(_PARTICIPLE.match(behind)) or bool(reported and _VERB.match(behind))
+        reported = rule("clauses.reports").search(before)
+        return bool(rule("clauses.participle").match(behind)) or bool(reported and _VERB.match(behind))
     return _acts(behind)
 
 

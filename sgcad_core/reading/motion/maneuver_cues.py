@@ -1,20 +1,19 @@
-"""What a vehicle did: turned, meant to turn, stopped, moved on, drifted, changed lanes, backed.
+"""Maneuver cues of a vehicle: turned, meant to turn, stopped, moved on, drifted, changed lanes, backed.
 
-Each deed is a word found in one segment, with its weight; `sgcad_core.reading.motion.maneuvers` decides.
+Each cue is a word found in one segment, with its weight; `sgcad_core.reading.motion.maneuvers` decides.
 """
 
 from __future__ import annotations
 
 import re
+from typing import NamedTuple
 
 from sgcad_core.reading.language import Rule, of_role, rule
-from sgcad_core.reading.motion.motion_record import Deed, Motion
+from sgcad_core.reading.motion.motion_record import ManeuverCue, VehicleMotion
 from sgcad_core.reading.text.compass import between, compass_of, turned
 
 _TURNING = rule("deeds.turning")
 _LATER = rule("deeds.later")
-_TRY = rule("deeds.try")
-_EVASIVE = rule("deeds.evasive")
 _NOT = rule("deeds.not")
 _HOPED = ("overtaking", "lane_change", "lane_change_left", "lane_change_right", "merge")
 """What a vehicle may wait or prepare to do and never does."""
@@ -28,35 +27,56 @@ _BEFORE = ("came_on", "moved_on")
 """What may be told behind what it came before: "stopped after passing the crosswalk"."""
 
 
-def read_deeds(motion: Motion, text: str, weight: int, number: int, at: int = 0) -> None:
+class _Segment(NamedTuple):
+    """A segment of one vehicle: its text, weight, sentence, and where in the sentence it begins."""
+
+    motion: VehicleMotion
+    text: str
+    weight: int
+    number: int
+    at: int
+
+    def add(self, kind: str, m: re.Match[str], rule_id: str) -> None:
+        """Add a cue to the vehicle's motion."""
+        self.motion.cues.append(ManeuverCue(kind, self.weight, self.number, m.group(), rule_id, self.at + m.end()))
+
+    def before(self, m: re.Match[str]) -> str:
+        """The last characters before a match."""
+        return self.text[max(0, m.start() - 60) : m.start()]
+
+
+def read_maneuver_cues(motion: VehicleMotion, text: str, weight: int, number: int, at: int = 0) -> None:
     """Add what one segment tells; `at`: where in its sentence it begins."""
+    segment = _Segment(motion, text, weight, number, at)
     for m in _TURNING.finditer(text):
         told = next((k for k in _SIDES if m.groupdict().get(k)), None)
         side = m[told].lower() if told else "left"
-        before = text[max(0, m.start() - 60) : m.start()]
-        if _NOT.search(before) or _EVASIVE.search(text[: m.start()]) or rule("deeds.steering").search(before):
+        before = segment.before(m)
+        if (
+            _NOT.search(before)
+            or rule("deeds.evasive").search(text[: m.start()])
+            or rule("deeds.steering").search(before)
+        ):
             continue
         led = before + text[m.start() : m.start(told) if told else m.start()]
-        begun = _TRY.search(before[-14:]) or rule("deeds.begins").search(led)
+        begun = rule("deeds.try").search(before[-14:]) or rule("deeds.begins").search(led)
         later = _LATER.search(before) and not begun
-        motion.deeds.append(
-            Deed(("want_" if later else "") + f"turn_{side}", weight, number, m.group(), _TURNING.id, at + m.end())
-        )
-    _read_turn_to(motion, text, weight, number, at)
+        segment.add(("want_" if later else "") + f"turn_{side}", m, _TURNING.id)
+    _read_turn_to(segment)
     told_now = of_role("deed_now") if motion.ordered else ()
-    for deed in (*of_role("deed"), *told_now):
-        for m in deed.finditer(text):
-            before = text[max(0, m.start() - 60) : m.start()]
-            undone = motion.ordered and _undone(deed.yields["deed"], before, m.group())
+    for cue in (*of_role("deed"), *told_now):
+        for m in cue.finditer(text):
+            before = segment.before(m)
+            undone = motion.ordered and _undone(cue.yields["deed"], before, m.group())
             if not _NOT.search(before[-30:]) and not undone:
-                _note_deed(motion, deed, m, (weight, number, at + m.end()))
+                _note_cue(segment, cue, m)
     if motion.ordered:
-        _read_turn_on(motion, text, weight, number, at)
-        _read_from_onto(motion, text, weight, number, at)
+        _read_turn_on(segment)
+        _read_from_onto(segment)
 
 
 def _undone(kind: str, before: str, words: str) -> bool:
-    """Whether the words before a deed say that it was waited for or meant, done before what they tell, or of people."""
+    """Whether the words before a cue make it a hope, a plan, an earlier act, or an act of people on foot."""
     if kind in _HOPED and (_LATER.search(before) or rule("deeds.meant").search(before)):
         return not (rule("deeds.done").match(words) or rule("deeds.begins").search(before))
     if kind in _BEFORE and rule("deeds.earlier").search(before):
@@ -65,52 +85,50 @@ def _undone(kind: str, before: str, words: str) -> bool:
     return kind in _ONWARD and bool(unmoved or rule("deeds.not_yet").search(before + words))
 
 
-def _read_turn_on(motion: Motion, text: str, weight: int, number: int, at: int) -> None:
+def _read_turn_on(segment: _Segment) -> None:
     """A turn that goes on, to the hand to which the vehicle was told to turn or to mean to turn."""
-    for m in rule("deeds.turn_on").finditer(text):
-        sides = [d.kind.removeprefix("want_") for d in motion.deeds if d.kind.removeprefix("want_") in _TURNS]
-        before = text[max(0, m.start() - 60) : m.start()]
+    for m in rule("deeds.turn_on").finditer(segment.text):
+        sides = [d.kind.removeprefix("want_") for d in segment.motion.cues if d.kind.removeprefix("want_") in _TURNS]
+        before = segment.before(m)
         if sides and not _NOT.search(before) and not _LATER.search(before):
-            motion.deeds.append(Deed(sides[-1], weight, number, m.group(), "deeds.turn_on", at + m.end()))
+            segment.add(sides[-1], m, "deeds.turn_on")
 
 
-def _read_from_onto(motion: Motion, text: str, weight: int, number: int, at: int) -> None:
+def _read_from_onto(segment: _Segment) -> None:
     """ "From westbound Elm Street onto southbound Oak Avenue": a turn by its two directions, where no word tells it."""
-    for m in rule("deeds.from_onto").finditer(text):
+    for m in rule("deeds.from_onto").finditer(segment.text):
         start, end = compass_of(m["from"]), compass_of(m["onto"])
         side = _BY_ANGLE.get(between(start, end)) if start and end else None
-        told = any(d.number == number and d.kind.endswith(f"turn_{side}") for d in motion.deeds)
+        told = any(d.number == segment.number and d.kind.endswith(f"turn_{side}") for d in segment.motion.cues)
         if side and not told:
-            motion.deeds.append(Deed(f"turn_{side}", weight, number, m.group(), "deeds.from_onto", at + m.end()))
+            segment.add(f"turn_{side}", m, "deeds.from_onto")
 
 
-def _read_turn_to(motion: Motion, text: str, weight: int, number: int, at: int) -> None:
-    """ "Turned toward the north" of who heads east, and "wanted to go left": turns that no other word tells."""
-    if any(d.number == number and d.kind.removeprefix("want_") in _TURNS for d in motion.deeds):
+def _read_turn_to(segment: _Segment) -> None:
+    """Turns that no other word tells: "turned toward the north" of an eastbound vehicle, "wanted to go left"."""
+    motion, text = segment.motion, segment.text
+    if any(d.number == segment.number and d.kind.removeprefix("want_") in _TURNS for d in motion.cues):
         return
     for m in rule("deeds.turn_to").finditer(text):
         start, end = motion.headings[0].value if motion.headings else None, compass_of(m["onto"])
         side = _BY_ANGLE.get(between(start, end)) if start and end else None
         if side and not _NOT.search(text[: m.start()]):
             want = "want_" if _LATER.search(text[: m.start()]) else ""
-            motion.deeds.append(Deed(f"{want}turn_{side}", weight, number, m.group(), "deeds.turn_to", at + m.end()))
+            segment.add(f"{want}turn_{side}", m, "deeds.turn_to")
     for m in rule("deeds.go_turn").finditer(text):
         want = "want_" if m["go"].lower() == "go" else ""
         if not _NOT.search(text[: m.start()]):
-            kind = f"{want}turn_{m['hand'].lower()}"
-            motion.deeds.append(Deed(kind, weight, number, m.group(), "deeds.go_turn", at + m.end()))
+            segment.add(f"{want}turn_{m['hand'].lower()}", m, "deeds.go_turn")
 
 
-def _note_deed(motion: Motion, deed: Rule, m: re.Match[str], told: tuple[int, int, int]) -> None:
-    """`told`: weight, sentence, place."""
-    kind, rule_id = deed.yields["deed"], deed.id
-    weight, number, at = told
+def _note_cue(segment: _Segment, cue: Rule, m: re.Match[str]) -> None:
+    kind, motion = cue.yields["deed"], segment.motion
     if kind == "from_side":
         motion.from_side = "left" if m.group("fromside").lower() == "left" else "right"
     elif kind == "into_lane":
         entered = compass_of(m.group("bound"))
         own = motion.headings[0][1] if motion.headings else None
         if entered and own and turned(entered, 180) == own:
-            motion.deeds.append(Deed("crossing_centerline", weight, number, m.group(), rule_id, at))
+            segment.add("crossing_centerline", m, cue.id)
     else:
-        motion.deeds.append(Deed(kind, weight, number, m.group(), rule_id, at))
+        segment.add(kind, m, cue.id)

@@ -1,4 +1,4 @@
-"""One maneuver a vehicle: what it was doing when the crash began, decided from all its deeds.
+"""One maneuver a vehicle: its pre-crash maneuver, decided from all its cues.
 
 A turn that is told as an act beats a plan to turn; a standing vehicle stays standing unless it moved on.
 """
@@ -9,18 +9,18 @@ from typing import NamedTuple
 
 from sgcad_core.kinds import RAMP
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.motion.motion_record import Deed, Motion
+from sgcad_core.reading.motion.motion_record import ManeuverCue, VehicleMotion
 from sgcad_core.records.specs import Area, Maneuver
 
 _SURE: tuple[Maneuver, ...] = ("parked", "backing", "u_turn")
 
 
 class Decision(NamedTuple):
-    """A maneuver, whether the text tells it, and the deed that decided."""
+    """A maneuver, whether the text tells it, and the cue that decided."""
 
     maneuver: Maneuver
     told: bool = True
-    deed: Deed | None = None
+    cue: ManeuverCue | None = None
 
 
 _PLAIN: tuple[Maneuver, ...] = (
@@ -29,7 +29,7 @@ _PLAIN: tuple[Maneuver, ...] = (
 )  # fmt: skip
 
 
-def decide(motion: Motion, hit: tuple[Area | None, ...], same_way: Maneuver = "turn_right") -> Decision:
+def decide(motion: VehicleMotion, hit: tuple[Area | None, ...], same_way: Maneuver = "turn_right") -> Decision:
     """The maneuver of a vehicle.
 
     `hit`: sides of the vehicle that were struck, in order. `same_way`: the turn that a critical event
@@ -38,22 +38,22 @@ def decide(motion: Motion, hit: tuple[Area | None, ...], same_way: Maneuver = "t
     if motion.ordered and (last := _last_state(motion)):
         return last
     for sure in _SURE:
-        if deed := motion.deed(sure, 3):
-            return Decision(sure, deed=deed)
-    if deed := motion.deed("code:u_turn"):
-        return Decision("u_turn", deed=deed)
+        if cue := motion.cue(sure, 3):
+            return Decision(sure, cue=cue)
+    if cue := motion.cue("code:u_turn"):
+        return Decision("u_turn", cue=cue)
     turn = None if changed_lanes_after_turn(motion) else _turn(motion, hit, same_way)
     if turn:
         return turn
     if _standing(motion, hit):
-        return Decision("stopped", deed=motion.deed("stopped") or motion.deed("code:stopped"))
+        return Decision("stopped", cue=motion.cue("stopped") or motion.cue("code:stopped"))
     return _moving(motion, 2 if hit[:1] == ("back",) else 3)
 
 
 _STANDING = ("stopped", "parked")
 _CHANGES: tuple[Maneuver, ...] = ("lane_change_left", "lane_change_right")
 _SHIFTS: dict[str, Maneuver] = {"shifted_left": "lane_change_left", "shifted_right": "lane_change_right"}
-"""Moves aside: a change of lane of anybody but the report's own vehicle, which moves aside to make room."""
+"""Moves aside: a lane change of any vehicle but the report's own, which moves aside to make room."""
 SHIFTED = tuple(f"deeds.{kind}" for kind in _SHIFTS)
 """Rules of such moves: the hand is told, that it is a change of lane is not."""
 _MOVING = (
@@ -67,39 +67,37 @@ _MOVING = (
     "overtaking",
     *_PLAIN,
 )
-
-
 _DEPARTURES: tuple[Maneuver, ...] = ("departing_road_left", "departing_road_right")
 
 
-def _last_state(motion: Motion) -> Decision | None:
+def _last_state(motion: VehicleMotion) -> Decision | None:
     """What a vehicle did last in an account in order: it stands, backs, or what is told since it stood."""
-    acts = sorted((d for d in motion.deeds if d.weight >= 3), key=lambda d: d.when)
+    acts = sorted((d for d in motion.cues if d.weight >= 3), key=lambda d: d.when)
     states = [d for d in acts if d.kind in (*_STANDING, "backing", *_MOVING, "u_turn")]
     if not states:
         return None
     last = states[-1]
     if last.kind in _STANDING:
-        return Decision("parked" if last.kind == "parked" else _stands(states), deed=last)
+        return Decision("parked" if last.kind == "parked" else _stands(states), cue=last)
     if last.kind in ("backing", "u_turn"):
-        return Decision("backing" if last.kind == "backing" else "u_turn", deed=last)
+        return Decision("backing" if last.kind == "backing" else "u_turn", cue=last)
     stood = sorted(d.when for d in states if d.kind in _STANDING)
     back = [d for d in states if d.kind == "backing" and (not stood or d.when > stood[-1])]
     if back and not any(d.when > back[-1].when and rule("deeds.forward").search(d.words) for d in states):
-        return Decision("backing", deed=back[-1])
+        return Decision("backing", cue=back[-1])
     stood = sorted([*stood, *(d.when for d in back)])
     since = [d for d in acts if not stood or d.when > stood[-1]]
     return _moving_since(motion, since)
 
 
-def _stands(states: list[Deed]) -> Maneuver:
+def _stands(states: list[ManeuverCue]) -> Maneuver:
     """Parked where it was parked and is not told to have moved since, else stopped."""
     moves = [d.when for d in states if d.kind in _MOVING or d.kind == "backing"]
     parked = [d.when for d in states if d.kind == "parked"]
     return "parked" if parked and (not moves or parked[-1] > moves[-1]) else "stopped"
 
 
-def _moving_since(motion: Motion, since: list[Deed]) -> Decision:
+def _moving_since(motion: VehicleMotion, since: list[ManeuverCue]) -> Decision:
     """The maneuver of a vehicle that moves: a turn, meant before or made, else a change of lane, else straight on."""
     turns = [d for d in since if d.kind in _TURNS]
     if turns and not _went_on(turns[-1], since):
@@ -109,35 +107,35 @@ def _moving_since(motion: Motion, since: list[Deed]) -> Decision:
         return _as_told(begun)
     since = _within_road(since)
     for kind in dict.fromkeys((*_CHANGES, *_PLAIN)):
-        if deed := next((d for d in since if d.kind == kind), None):
-            return Decision(kind, deed=deed)
-    wants = [d for d in motion.deeds if d.kind.startswith("want_turn_") and d.weight >= 3]
+        if cue := next((d for d in since if d.kind == kind), None):
+            return Decision(kind, cue=cue)
+    wants = [d for d in motion.cues if d.kind.startswith("want_turn_") and d.weight >= 3]
     if wants and any(d.kind == "moved_on" and d.when > wants[-1].when for d in since):
         return _as_told(wants[-1])
-    if deed := next((d for d in since if d.kind == "lane_change"), None):
-        return Decision("lane_change_left", False, deed)
-    if not motion.watched and (deed := next((d for d in since if d.kind in _SHIFTS), None)):
-        return Decision(_SHIFTS[deed.kind], False, deed)
+    if cue := next((d for d in since if d.kind == "lane_change"), None):
+        return Decision("lane_change_left", False, cue)
+    if not motion.watched and (cue := next((d for d in since if d.kind in _SHIFTS), None)):
+        return Decision(_SHIFTS[cue.kind], False, cue)
     slowing = next((d for d in since if d.kind == "slowing"), None)
-    return Decision("slowing" if slowing else "straight", deed=slowing or (since[-1] if since else None))
+    return Decision("slowing" if slowing else "straight", cue=slowing or (since[-1] if since else None))
 
 
-def turned_before(motion: Motion, maneuver: Maneuver) -> Deed | None:
+def turned_before(motion: VehicleMotion, maneuver: Maneuver) -> ManeuverCue | None:
     """The turn that an account in order tells as over before what its vehicle did in the crash; None where none is."""
-    turns = [d for d in motion.deeds if d.kind in _TURNS and d.weight >= 3]
+    turns = [d for d in motion.cues if d.kind in _TURNS and d.weight >= 3]
     if not motion.ordered or not turns or maneuver in (*_TURNS, "u_turn"):
         return None
     last = max(turns, key=lambda d: d.when)
-    return last if _went_on(last, [d for d in motion.deeds if d.when > last.when]) else None
+    return last if _went_on(last, [d for d in motion.cues if d.when > last.when]) else None
 
 
-def _within_road(acts: list[Deed]) -> list[Deed]:
+def _within_road(acts: list[ManeuverCue]) -> list[ManeuverCue]:
     """Without crossings of the middle of the road that are changes of lane by the same words: "over the lane line"."""
     changes = {d.when for d in acts if d.kind == "lane_change"}
     return [d for d in acts if d.kind != "crossing_centerline" or d.when not in changes]
 
 
-def _went_on(turn: Deed, since: list[Deed]) -> bool:
+def _went_on(turn: ManeuverCue, since: list[ManeuverCue]) -> bool:
     """Whether a turn was over: it is told so, or a later sentence has the vehicle on its way again."""
     if any(d.kind == "turn_done" and d.when >= turn.when for d in since):
         return True
@@ -147,120 +145,120 @@ def _went_on(turn: Deed, since: list[Deed]) -> bool:
     )
 
 
-def _begun_turn(motion: Motion, since: list[Deed]) -> Deed | None:
+def _begun_turn(motion: VehicleMotion, since: list[ManeuverCue]) -> ManeuverCue | None:
     """A turn that was begun, broken off by a stop, and gone on with."""
-    turns = [d for d in motion.deeds if d.kind in _TURNS and d.weight >= 3]
+    turns = [d for d in motion.cues if d.kind in _TURNS and d.weight >= 3]
     if not turns or not since or not any(d.kind == "moved_on" for d in since):
         return None
-    acts = [d for d in motion.deeds if d.when > turns[-1].when and d.when < since[0].when and d.kind in _MOVING]
+    acts = [d for d in motion.cues if d.when > turns[-1].when and d.when < since[0].when and d.kind in _MOVING]
     begun = rule("deeds.begun_turn").search(turns[-1].words)
     return turns[-1] if begun and not acts else None
 
 
-def changed_lanes_after_turn(motion: Motion) -> bool:
+def changed_lanes_after_turn(motion: VehicleMotion) -> bool:
     """Whether a turn was over before the lane change in which the vehicle crashed."""
-    turns = [d.number for d in motion.deeds if d.kind in ("turn_left", "turn_right") and d.weight >= 3]
-    changes = [d.number for d in motion.deeds if d.kind.startswith("lane_change") and d.weight >= 3]
+    turns = [d.number for d in motion.cues if d.kind in ("turn_left", "turn_right") and d.weight >= 3]
+    changes = [d.number for d in motion.cues if d.kind.startswith("lane_change") and d.weight >= 3]
     return bool(turns and changes) and min(changes) > max(turns)
 
 
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right")
 
 
-def _turn(motion: Motion, hit: tuple[Area | None, ...], same_way: Maneuver) -> Decision | None:
+def _turn(motion: VehicleMotion, hit: tuple[Area | None, ...], same_way: Maneuver) -> Decision | None:
     """A turn that was made or begun."""
     from_behind = bool(hit) and hit[0] == "back"
     for turn in _TURNS:
-        if (deed := motion.deed(f"code:{turn}")) and not (from_behind and _standing(motion, hit)):
-            return Decision(turn, deed=deed)
-    acts = [d for d in motion.deeds if d.kind in _TURNS and d.weight >= 2]
-    if acts and not (from_behind and motion.did("stopped", 2)):
+        if (cue := motion.cue(f"code:{turn}")) and not (from_behind and _standing(motion, hit)):
+            return Decision(turn, cue=cue)
+    acts = [d for d in motion.cues if d.kind in _TURNS and d.weight >= 2]
+    if acts and not (from_behind and motion.has_cue("stopped", 2)):
         return _as_told(max(acts, key=lambda d: d.weight))
-    if deed := motion.deed("code:into_opposite"):
-        return Decision("turn_left", deed=deed)
-    wants = [d for d in motion.deeds if d.kind.startswith("want_turn_") and d.weight >= 2]
-    if motion.did("code:over_left") or motion.did("crossing_centerline", 3):
+    if cue := motion.cue("code:into_opposite"):
+        return Decision("turn_left", cue=cue)
+    wants = [d for d in motion.cues if d.kind.startswith("want_turn_") and d.weight >= 2]
+    if motion.has_cue("code:over_left") or motion.has_cue("crossing_centerline", 3):
         wants = []
-    if wants and not from_behind and (_moved_on(motion, wants[0]) or not motion.did("stopped", 2)):
+    if wants and not from_behind and (_moved_on(motion, wants[0]) or not motion.has_cue("stopped", 2)):
         return _as_told(wants[0])
-    return Decision(same_way, deed=deed) if (deed := motion.deed("code:into_same")) else None
+    return Decision(same_way, cue=cue) if (cue := motion.cue("code:into_same")) else None
 
 
-def _as_told(deed: Deed) -> Decision:
-    """The turn that a deed tells or wants."""
-    return Decision("turn_left" if deed.kind.endswith("turn_left") else "turn_right", deed=deed)
+def _as_told(cue: ManeuverCue) -> Decision:
+    """The turn that a cue tells or wants."""
+    return Decision("turn_left" if cue.kind.endswith("turn_left") else "turn_right", cue=cue)
 
 
-def _moved_on(motion: Motion, since: Deed) -> bool:
-    return any(d.kind == "moved_on" and d.weight >= 2 and d.number >= since.number for d in motion.deeds)
+def _moved_on(motion: VehicleMotion, since: ManeuverCue) -> bool:
+    return any(d.kind == "moved_on" and d.weight >= 2 and d.number >= since.number for d in motion.cues)
 
 
-def _standing(motion: Motion, hit: tuple[Area | None, ...]) -> bool:
+def _standing(motion: VehicleMotion, hit: tuple[Area | None, ...]) -> bool:
     from_behind = bool(hit) and hit[0] == "back"
     stops = [
         d
-        for d in motion.deeds
-        if d.kind == "stopped" and d.weight >= (1 if from_behind and not motion.did("slowing", 3) else 3)
+        for d in motion.cues
+        if d.kind == "stopped" and d.weight >= (1 if from_behind and not motion.has_cue("slowing", 3) else 3)
     ]
-    if motion.did("code:stopped"):
-        return from_behind or bool(stops) or not motion.did("moved_on", 3)
+    if motion.has_cue("code:stopped"):
+        return from_behind or bool(stops) or not motion.has_cue("moved_on", 3)
     if not stops:
         return False
     return from_behind or not _moved_on(motion, stops[0])
 
 
-def meant_turn(motion: Motion) -> Decision | None:
+def meant_turn(motion: VehicleMotion) -> Decision | None:
     """The turn that a vehicle waited, slowed or wanted to make."""
-    wants = [d for d in motion.deeds if d.kind.startswith("want_turn_")]
+    wants = [d for d in motion.cues if d.kind.startswith("want_turn_")]
     return _as_told(max(wants, key=lambda d: d.weight)) if wants else None
 
 
-def started_from_stop(motion: Motion, maneuver: Maneuver) -> bool:
+def started_from_stop(motion: VehicleMotion, maneuver: Maneuver) -> bool:
     """Whether a vehicle that goes on, turns or merges is told to have stood right before."""
     if maneuver not in ("straight", "merge", "turn_left", "turn_right", "u_turn"):
         return False
-    onward = [d for d in motion.deeds if d.kind in ("moved_on", "straight", "turn_left", "turn_right", "u_turn")]
-    return any(d.kind == "stopped" and _moved_behind(d, onward) for d in motion.deeds)
+    onward = [d for d in motion.cues if d.kind in ("moved_on", "straight", "turn_left", "turn_right", "u_turn")]
+    return any(d.kind == "stopped" and _moved_behind(d, onward) for d in motion.cues)
 
 
-def _moved_behind(stop: Deed, onward: list[Deed]) -> bool:
+def _moved_behind(stop: ManeuverCue, onward: list[ManeuverCue]) -> bool:
     return any(stop.number <= d.number <= stop.number + 1 for d in onward)
 
 
-def _over_the_line(motion: Motion, deed: Deed) -> Decision:
+def _over_the_line(motion: VehicleMotion, cue: ManeuverCue) -> Decision:
     """Over a lane line: beside a vehicle that drives the same way it is a change of lane."""
-    left = deed.kind == "code:over_left"
-    if any(kin == "same" and word == "code" for _, kin, _, word in motion.kin):
-        return Decision("lane_change_left" if left else "lane_change_right", deed=deed)
-    return Decision("crossing_centerline" if left else "departing_road_right", deed=deed)
+    left = cue.kind == "code:over_left"
+    if any(relation == "same" and word == "code" for _, relation, _, word in motion.relations):
+        return Decision("lane_change_left" if left else "lane_change_right", cue=cue)
+    return Decision("crossing_centerline" if left else "departing_road_right", cue=cue)
 
 
-def _before_the_rest(motion: Motion, acts: list[Deed]) -> Deed | None:
+def _before_the_rest(motion: VehicleMotion, acts: list[ManeuverCue]) -> ManeuverCue | None:
     """Passing that is told before the way over the middle of the road that it took; a merge of one from a ramp."""
-    passing, over = motion.deed("overtaking", 3), next((d for d in acts if d.kind == "crossing_centerline"), None)
+    passing, over = motion.cue("overtaking", 3), next((d for d in acts if d.kind == "crossing_centerline"), None)
     if passing and over and passing.when < over.when:
         return passing
-    return motion.deed("merge", 3) if motion.origin == RAMP else None
+    return motion.cue("merge", 3) if motion.origin == RAMP else None
 
 
-def _moving(motion: Motion, least: int) -> Decision:
-    acts = _within_road(motion.deeds)
+def _moving(motion: VehicleMotion, least: int) -> Decision:
+    acts = _within_road(motion.cues)
     if first := _before_the_rest(motion, acts):
-        return Decision(first.kind, deed=first)  # type: ignore[arg-type]
+        return Decision(first.kind, cue=first)  # type: ignore[arg-type]
     for kind in _PLAIN:
-        if any(d.kind == kind for d in acts) and (deed := motion.deed(kind, 3)):
-            return Decision(kind, deed=deed)
+        if any(d.kind == kind for d in acts) and (cue := motion.cue(kind, 3)):
+            return Decision(kind, cue=cue)
     for over in ("code:over_left", "code:over_right"):
-        if (deed := motion.deed(over)) and not motion.did("code:straight"):
-            return _over_the_line(motion, deed)
-    if deed := motion.deed("lane_change", 3):
-        return Decision("lane_change_left", False, deed)
-    if deed := motion.deed("negotiating_curve", 3):
-        return Decision("negotiating_curve", deed=deed)
+        if (cue := motion.cue(over)) and not motion.has_cue("code:straight"):
+            return _over_the_line(motion, cue)
+    if cue := motion.cue("lane_change", 3):
+        return Decision("lane_change_left", False, cue)
+    if cue := motion.cue("negotiating_curve", 3):
+        return Decision("negotiating_curve", cue=cue)
     for side in _DEPARTURES:
-        if deed := motion.deed(f"code:{side}"):
-            return Decision(side, deed=deed)
-    if deed := motion.deed("slowing", least) or motion.deed("code:slowing"):
-        return Decision("slowing", deed=deed)
-    deed = motion.deed("straight") or motion.deed("code:straight")
-    return Decision("straight", deed is not None, deed)
+        if cue := motion.cue(f"code:{side}"):
+            return Decision(side, cue=cue)
+    if cue := motion.cue("slowing", least) or motion.cue("code:slowing"):
+        return Decision("slowing", cue=cue)
+    cue = motion.cue("straight") or motion.cue("code:straight")
+    return Decision("straight", cue is not None, cue)

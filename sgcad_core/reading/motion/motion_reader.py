@@ -1,7 +1,7 @@
-"""How each vehicle moved before the crash: heading, lane, speed, deeds, where it came from and meant to go.
+"""Motion of each vehicle before the crash: heading, lane, speed, maneuver cues, origin and target.
 
-Reads segments (one subject each) and the critical-event sentences that many reports carry. What an
-interview says counts only where nothing else does. Knows no contact and infers nothing across vehicles.
+Reads segments (one subject each) and the critical-event sentences that many reports carry. What an interview says
+counts only where nothing else does. Knows no contact and infers nothing across vehicles.
 """
 
 from __future__ import annotations
@@ -9,86 +9,87 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from sgcad_core.reading.actors.unnumbered_actors import PARTS
-from sgcad_core.reading.actors.vehicles import Identity, Roster
-from sgcad_core.reading.language import rule
+from sgcad_core.reading.actors.vehicles import MENTION, Roster, VehicleDescription
+from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
-from sgcad_core.reading.motion.critical_events import read_code
-from sgcad_core.reading.motion.headings import note_bound, read_heading
-from sgcad_core.reading.motion.maneuver_cues import read_deeds
-from sgcad_core.reading.motion.motion_record import Motion
-from sgcad_core.reading.motion.surroundings import read_access, read_kin, read_lane
+from sgcad_core.reading.motion.heading_lane_cues import (
+    note_headings_of_mentions,
+    read_heading,
+    read_lane,
+    read_origin_and_target,
+    read_relations,
+)
+from sgcad_core.reading.motion.maneuver_cues import read_maneuver_cues
+from sgcad_core.reading.motion.motion_record import ManeuverCue, VehicleMotion
 from sgcad_core.reading.text.sentence_roles import HIT, Role
 from sgcad_core.reading.text.speeds import read_speed, read_speeds_beside
 
 _WEIGHT: dict[Role, int] = {"approach": 4, "impact": 3, "opening": 3, "road": 3, "avoidance": 3, "conditions": 3,
                           "rest": 2}  # fmt: skip
-
-
-_STOPPED_AT_LAST = rule("motion_reader.stopped_at_last")
-_STOPPED_THERE = rule("motion_reader.stopped_there")
-_THROWN = rule("motion_reader.thrown")
 _UNREAD: tuple[Role, ...] = ("codes", "factors", "towing", "injury", "restraint", "police", "health", "formal")
 
 
-def motions(
-    told: Sequence[Statement], cut: Iterable[Segment], who: Roster, struck_at: int | None = None
-) -> dict[str, Motion]:
+def read_motions(
+    statements: Sequence[Statement], segments: Iterable[Segment], roster: Roster, struck_at: int | None = None
+) -> dict[str, VehicleMotion]:
     """Motion of every vehicle of the roster; `struck_at`: the sentence of the contact, where that is known."""
-    found = {v: Motion(watched=v == who.ids[0], ordered=who.counted) for v in who.ids}
-    for identity in who.vehicles if who.counted else ():
-        _read_part(found[identity.id], identity, who)
-    impact = min((t.number for t in told if t.role == "impact"), default=len(told))
-    impact = struck_at if who.counted and struck_at is not None else impact
-    blow = next((t for t in told if t.number == impact), None) if who.counted else None
-    for segment in cut:
-        if segment.role in _UNREAD or (blow and _behind(blow, segment)):
+    found = {v: VehicleMotion(watched=v == roster.ids[0], ordered=roster.counted) for v in roster.ids}
+    for identity in roster.vehicles if roster.counted else ():
+        _read_part(found[identity.id], identity, roster)
+    impact = min((t.number for t in statements if t.role == "impact"), default=len(statements))
+    impact = struck_at if roster.counted and struck_at is not None else impact
+    contact_sentence = next((t for t in statements if t.number == impact), None) if roster.counted else None
+    for segment in segments:
+        if segment.role in _UNREAD or (contact_sentence and _behind(contact_sentence, segment)):
             continue
         for vehicle in segment.subjects:
             motion = found[vehicle]
             motion.at = segment.number
             after = segment.number > impact
-            late = after and bool(motion.headings or motion.deeds)
-            if late and who.counted:
+            late = after and bool(motion.headings or motion.cues)
+            if late and roster.counted:
                 continue
-            _read(motion, segment, vehicle, who, 2 if late else 4, after)
-    for t in told:
+            _read(motion, segment, vehicle, roster, 2 if late else 4, after)
+    for t in statements:
         for motion in found.values():
             motion.at = t.number
         if t.role not in _UNREAD:
-            note_bound(found, t.text, _WEIGHT.get(t.role, 1))
+            note_headings_of_mentions(found, t.text, _WEIGHT.get(t.role, 1))
         if t.role in ("codes", "factors"):
-            read_code(found, t, who)
-    if not who.counted:
-        read_speeds_beside(found, [t for t in told if t.role not in _UNREAD])
+            read_critical_event(found, t, roster)
+    if not roster.counted:
+        read_speeds_beside(found, [t for t in statements if t.role not in _UNREAD])
     for motion in found.values():
         _hear_interview(motion)
     return found
 
 
-def _hear_interview(motion: Motion) -> None:
-    """Of whom nothing else tells what he did: what an interview tells, as if the report told it."""
-    if motion.ordered or any(d.weight >= 2 or d.kind.startswith("code:") for d in motion.deeds):
+def _hear_interview(motion: VehicleMotion) -> None:
+    """Raises the weight of interview cues of a vehicle whose motion is told nowhere else."""
+    if motion.ordered or any(d.weight >= 2 or d.kind.startswith("code:") for d in motion.cues):
         return
-    motion.deeds = [d._replace(weight=3) for d in motion.deeds]
+    motion.cues = [d._replace(weight=3) for d in motion.cues]
 
 
-def _behind(blow: Statement, segment: Segment) -> bool:
+def _behind(contact_sentence: Statement, segment: Segment) -> bool:
     """Whether a segment of the sentence of the contact tells what came behind it."""
-    if segment.number != blow.number or not rule("motion_reader.next_event").search(blow.text[: segment.at]):
+    if segment.number != contact_sentence.number or not rule("motion_reader.next_event").search(
+        contact_sentence.text[: segment.at]
+    ):
         return False
-    return any(not rule("motion_reader.no_hit").search(blow.text[: m.start()].lower())
-               for m in HIT.finditer(blow.text, 0, segment.at))  # fmt: skip
+    return any(not rule("motion_reader.no_hit").search(contact_sentence.text[: m.start()].lower())
+               for m in HIT.finditer(contact_sentence.text, 0, segment.at))  # fmt: skip
 
 
-def _read_part(motion: Motion, identity: Identity, who: Roster) -> None:
+def _read_part(motion: VehicleMotion, identity: VehicleDescription, roster: Roster) -> None:
     """Where a vehicle drives beside the subject, as its first description says: "the lead vehicle"."""
-    words = " ".join(cue.words for cue in identity.described).lower().split()
+    words = " ".join(source.words for source in identity.described).lower().split()
     part = next((PARTS[word] for word in words if word in PARTS), None)
-    if part and identity.id != who.ids[0]:
-        motion.kin.append((4, "opposite" if part == "opposite" else "same", who.ids[0], part))
+    if part and identity.id != roster.ids[0]:
+        motion.relations.append((4, "opposite" if part == "opposite" else "same", roster.ids[0], part))
 
 
-def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int, after: bool) -> None:
+def _read(motion: VehicleMotion, segment: Segment, vehicle: str, roster: Roster, most: int, after: bool) -> None:
     """`most`: the highest weight; what is told again behind the impact (`after`) is another witness."""
     text = _until_stopped(rule("motion_reader.brackets").sub(" ", segment.text), after)
     if motion.ordered:
@@ -96,22 +97,29 @@ def _read(motion: Motion, segment: Segment, vehicle: str, who: Roster, most: int
     weight = min(_WEIGHT.get(segment.role, 1), most)
     before_hit = _until_hit(text) if segment.role != "rest" else _until_rest(text)
     read_heading(motion, before_hit, weight)
-    read_deeds(motion, before_hit, weight, segment.number, segment.at)
-    read_kin(motion, before_hit, weight, vehicle, who)
+    read_maneuver_cues(motion, before_hit, weight, segment.number, segment.at)
+    read_relations(motion, before_hit, weight, vehicle, roster)
     if segment.role != "rest":
         read_lane(motion, before_hit)
-        read_access(motion, before_hit)
+        read_origin_and_target(motion, before_hit)
     read_speed(motion, segment.text, weight)
 
 
 def _until_stopped(text: str, after: bool) -> str:
-    """Without the end of a way that a blow began: "spun and stopped in the road", "stopped facing west"."""
-    found = _STOPPED_AT_LAST.search(text) or (_STOPPED_THERE.search(text) if after else None)
-    return text[: found.start()] if found and (after or _THROWN.search(text[: found.start()])) else text
+    """The text without the end of a motion that the impact began: "spun and stopped in the road", "stopped facing
+    west"."""
+    found = rule("motion_reader.stopped_at_last").search(text) or (
+        rule("motion_reader.stopped_there").search(text) if after else None
+    )
+    return (
+        text[: found.start()]
+        if found and (after or rule("motion_reader.thrown").search(text[: found.start()]))
+        else text
+    )
 
 
 def _until_hit(text: str) -> str:
-    """The part before the blow: what follows it is the effect, not the approach."""
+    """The part before the contact: what follows it is the effect, not the approach."""
     for m in HIT.finditer(text):
         if not rule("motion_reader.no_hit").search(text[: m.start()]):
             moving = rule("motion_reader.moving_hit").match(m.group())
@@ -122,3 +130,36 @@ def _until_hit(text: str) -> str:
 def _until_rest(text: str) -> str:
     cut = rule("motion_reader.rest").search(text)
     return text[: cut.start()] if cut else text
+
+
+def read_critical_event(found: dict[str, VehicleMotion], statement: Statement, roster: Roster) -> None:
+    """Adds cues and relations of a critical-event sentence."""
+    text = statement.text.lower()
+    if not rule("critical_events.event").search(text):
+        return
+    named = [v for v in MENTION.findall(statement.text) if v in roster.ids]
+    owner = named[0] if named else statement.subject
+    if owner not in found or rule("critical_events.uncoded").match(text):
+        return
+    if rule("critical_events.other_vehicle").search(text):
+        _other_code(found, owner, text, statement.number, roster)
+    else:
+        for event in of_role("own_event"):
+            if code := event.search(text):
+                found[owner].cues.append(
+                    ManeuverCue(f"code:{event.yields['deed']}", 2, statement.number, code.group(), event.id)
+                )
+
+
+def _other_code(found: dict[str, VehicleMotion], owner: str, text: str, number: int, roster: Roster) -> None:
+    other = roster.other(owner)
+    for event in of_role("others_event"):
+        if not (code := event.search(text)):
+            continue
+        what = event.yields
+        if "kin" in what:
+            for me, you in ((owner, other), (other, owner)) if other else ((owner, other),):
+                if me:
+                    found[me].relations.append((3, what["kin"], you, "code"))
+        elif who_did := (owner if what["whom"] == "self" else other):
+            found[who_did].cues.append(ManeuverCue(f"code:{what['deed']}", 2, number, code.group(), event.id))

@@ -11,10 +11,10 @@ from sgcad_core.records.specs import Compass
 Access = Literal["driveway", "alley", "parking_lot", "ramp", "shoulder", "side_road"]
 DRIVES: tuple[Access, ...] = (DRIVEWAY, ALLEY, "parking_lot")
 """Where vehicles come from or turn into that drive on no street there."""
-Kin = Literal["same", "opposite", "crossing"]
+RelativeDirection = Literal["same", "opposite", "crossing"]
 
 
-class Cue(NamedTuple):
+class Source(NamedTuple):
     """Where something was read: a sentence's number (from 0), the words, as in the resolved sentence, and the rule."""
 
     number: int
@@ -22,7 +22,7 @@ class Cue(NamedTuple):
     rule: str = ""
 
 
-class Deed(NamedTuple):
+class ManeuverCue(NamedTuple):
     """One thing a vehicle did or was doing; `weight` 4 where the approach says so, 1 in an interview."""
 
     kind: str
@@ -34,9 +34,9 @@ class Deed(NamedTuple):
     """Where in its sentence it ends."""
 
     @property
-    def cue(self) -> Cue:
+    def source(self) -> Source:
         """Where it was read."""
-        return Cue(self.number, self.words, self.rule)
+        return Source(self.number, self.words, self.rule)
 
     @property
     def when(self) -> tuple[int, int]:
@@ -44,16 +44,16 @@ class Deed(NamedTuple):
         return self.number, self.at
 
 
-class Heard(NamedTuple):
+class WeightedValue(NamedTuple):
     """A heading or a speed (mph) that is told, and with what weight."""
 
     weight: int
     value: Any
-    cue: Cue
+    source: Source
 
 
 @dataclass
-class Motion:
+class VehicleMotion:
     """What the text says of one vehicle's motion; empty where it says nothing."""
 
     at: int = 0
@@ -61,38 +61,37 @@ class Motion:
     watched: bool = False
     """Whether it is the report's own vehicle."""
     ordered: bool = False
-    """Whether the deeds are one account in order, up to the contact."""
-    headings: list[Heard] = field(default_factory=list)
+    """Whether the cues are one account in order, up to the contact."""
+    headings: list[WeightedValue] = field(default_factory=list)
     """In the order of the text."""
     exits: list[Compass] = field(default_factory=list)
     """Headings that it turned to or meant to turn to."""
-    deeds: list[Deed] = field(default_factory=list)
-    kin: list[tuple[int, Kin, str | None, str]] = field(default_factory=list)
+    cues: list[ManeuverCue] = field(default_factory=list)
+    relations: list[tuple[int, RelativeDirection, str | None, str]] = field(default_factory=list)
     """(weight, relation, other vehicle if named, word: ahead, behind, ...)."""
     lane: int | None = None
     """1 = at the right curb; -1 = the leftmost."""
     lane_word: str | None = None
-    speeds_mph: list[Heard] = field(default_factory=list)
+    speeds_mph: list[WeightedValue] = field(default_factory=list)
     origin: Access | None = None
     target: Access | None = None
-    axes: list[str] = field(default_factory=list)
     from_side: Literal["left", "right"] | None = None
-    sources: dict[str, Cue] = field(default_factory=dict)
+    sources: dict[str, Source] = field(default_factory=dict)
     """Where lane, origin, target, each exit ("exit W") and where it faces or backs to ("faces W", "backs W") were first
     read."""
 
-    def did(self, kind: str, least: int = 1) -> bool:
-        """Whether a deed is told with at least that weight."""
-        return self.deed(kind, least) is not None
+    def has_cue(self, kind: str, least: int = 1) -> bool:
+        """Whether a cue of that kind has at least that weight."""
+        return self.cue(kind, least) is not None
 
-    def deed(self, kind: str, least: int = 1) -> Deed | None:
-        """The first deed of that kind that is told with at least that weight."""
-        return next((d for d in self.deeds if d.kind == kind and d.weight >= least), None)
+    def cue(self, kind: str, least: int = 1) -> ManeuverCue | None:
+        """The first cue of that kind with at least that weight."""
+        return next((d for d in self.cues if d.kind == kind and d.weight >= least), None)
 
     def read(self, what: str, words: str, rule: str) -> None:
         """Note where something was read and by which rule, if it is the first time."""
-        self.sources.setdefault(what, Cue(self.at, words, rule))
+        self.sources.setdefault(what, Source(self.at, words, rule))
 
-    def heard(self, into: list[Heard], weight: int, value: Any, words: str, rule: str) -> None:
+    def add_value(self, into: list[WeightedValue], weight: int, value: Any, words: str, rule: str) -> None:
         """Note a heading or a speed."""
-        into.append(Heard(weight, value, Cue(self.at, words, rule)))
+        into.append(WeightedValue(weight, value, Source(self.at, words, rule)))

@@ -1,7 +1,7 @@
-"""What a traffic signal showed to each vehicle when it came to the crash, where the report tells it.
+"""The state of the traffic signal for each vehicle when it came to the crash, where the report tells it.
 
-The crash's own sentences come first, of them the last; then what drivers and witnesses said, if they agree. What
-somebody only thought, and signals that flash, tell nothing. Knows no map.
+The crash's own sentences come first, of them the last; then interviews, if they agree. Guesses and flashing signals
+tell nothing. Knows no map.
 """
 
 from __future__ import annotations
@@ -11,22 +11,21 @@ from typing import Literal, NamedTuple
 
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES
 
 SignalState = Literal["green", "yellow", "red"]
-_HEDGED = rule("signal_states.hedged")
 
 
 class SignalTold(NamedTuple):
     """A state and where it is told."""
 
     state: SignalState
-    cue: Cue
+    source: Source
 
 
 def signal_states(segments: Iterable[Segment]) -> Mapping[str, SignalTold]:
-    """By vehicle; whoever's signal is not told, or told in two ways by those who are quoted, is not in it."""
+    """Signal by vehicle; a vehicle whose signal is not told, or told in two ways by interviews, is left out."""
     story: dict[str, list[SignalTold]] = {}
     quoted: dict[str, list[SignalTold]] = {}
     for segment in segments:
@@ -39,10 +38,10 @@ def signal_states(segments: Iterable[Segment]) -> Mapping[str, SignalTold]:
 
 def _told(segment: Segment) -> Iterator[SignalTold]:
     """States in the order of the text."""
-    if _HEDGED.search(segment.text):
+    if rule("signal_states.hedged").search(segment.text):
         return
     found = [
-        (match.start(), SignalTold(told.yields["signal"], Cue(segment.number, match[0], told.id)))
+        (match.start(), SignalTold(told.yields["signal"], Source(segment.number, match[0], told.id)))
         for told in of_role("signal_state")
         for match in told.finditer(segment.text)
     ]

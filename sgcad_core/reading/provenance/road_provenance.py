@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sgcad_core.kinds import FOUR_LEG, T
-from sgcad_core.reading.provenance.crash_provenance import Telling
-from sgcad_core.reading.roads.lane_sources import stated
+from sgcad_core.reading.provenance.crash_provenance import FactBuilder
+from sgcad_core.reading.roads.lane_sources import stated_values
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.text.compass import COMPASS, NAMES, turned
@@ -41,37 +41,37 @@ def road_of_bearing(facts: RoadFacts, leg: str) -> str | None:
     return next((name for name, road in pairs if road.axis == axis), None)
 
 
-def road_provenance(telling: Telling, facts: RoadFacts) -> Iterator[Fact]:
+def road_provenance(builder: FactBuilder, facts: RoadFacts) -> Iterator[Fact]:
     """Facts of every road, and of the junction."""
     for name, road in zip(road_names(facts), facts.roads, strict=True):
-        yield from _road(telling, f"roads.{name}", road)
-    yield from _junction(telling, facts)
-    yield from _approaches(telling, facts)
+        yield from _road(builder, f"roads.{name}", road)
+    yield from _junction(builder, facts)
+    yield from _approaches(builder, facts)
     if facts.opening:
-        yield telling.stated("place.median_opening", True, facts.opening)
+        yield builder.stated("place.median_opening", True, facts.opening)
     if closed := facts.closed:
         field = "place.closed_lane"
         said = closed.side_stated
         yield (
-            telling.stated(field, closed.side, closed.where)
+            builder.stated(field, closed.side, closed.where)
             if said
-            else telling.inferred(field, closed.side, "places.who leaves it", closed.where)
+            else builder.inferred(field, closed.side, "places.who leaves it", closed.where)
         )
 
 
-def _approaches(telling: Telling, facts: RoadFacts) -> Iterator[Fact]:
+def _approaches(builder: FactBuilder, facts: RoadFacts) -> Iterator[Fact]:
     """Lanes of the legs of a junction as the story lists them, leg by leg."""
     if facts.junction.kind not in (T, FOUR_LEG):
         return
     stem = facts.junction.stem
     for leg in COMPASS:
         told = facts.approaches.of(leg, stem)
-        if told.cue is None or (stem and leg == turned(stem, 180)) or not _lies(facts, leg):
+        if told.source is None or (stem and leg == turned(stem, 180)) or not _lies(facts, leg):
             continue
         at = f"approaches.{NAMES[leg]}"
         for name in ("lanes_in", "turns_in", "lanes_out"):
             if value := getattr(told, name):
-                yield telling.stated(f"{at}.{name}", value, told.cue)
+                yield builder.stated(f"{at}.{name}", value, told.source)
 
 
 def _lies(facts: RoadFacts, leg: Compass) -> bool:
@@ -85,44 +85,44 @@ def _lies(facts: RoadFacts, leg: Compass) -> bool:
     )
 
 
-def _road(telling: Telling, at: str, road: RoadFact) -> Iterator[Fact]:
+def _road(builder: FactBuilder, at: str, road: RoadFact) -> Iterator[Fact]:
     if road.axis:
         named = road.where.get("axis")
         field = f"{at}.axis"
-        yield telling.stated(field, road.axis, named) if named else telling.inferred(field, road.axis, "vehicles on it")
-    yield from _lanes(telling, at, road)
+        yield builder.stated(field, road.axis, named) if named else builder.inferred(field, road.axis, "vehicles on it")
+    yield from _lanes(builder, at, road)
     if road.speed_limit_mph is not None:
-        yield telling.stated(f"{at}.speed_limit_mph", road.speed_limit_mph, road.where.get("speed_limit"))
+        yield builder.stated(f"{at}.speed_limit_mph", road.speed_limit_mph, road.where.get("speed_limit"))
     for way, side in road.curve:
-        yield telling.stated(f"{at}.curve_{_WAYS[way]}", side, road.where.get(f"curve {way}"))
+        yield builder.stated(f"{at}.curve_{_WAYS[way]}", side, road.where.get(f"curve {way}"))
     if road.rural:
-        yield telling.stated(f"{at}.rural", True, road.where.get("rural"))
+        yield builder.stated(f"{at}.rural", True, road.where.get("rural"))
 
 
-def _lanes(telling: Telling, at: str, road: RoadFact) -> Iterator[Fact]:
-    for name, value in stated(road.lanes).items():
+def _lanes(builder: FactBuilder, at: str, road: RoadFact) -> Iterator[Fact]:
+    for name, value in stated_values(road.lanes).items():
         if name == "own":
             continue
         kind, _, way = name.partition(" ")
         field = {"toward": f"lanes_{_WAYS.get(way)}", "turns": f"turn_lanes_{_WAYS.get(way)}"}.get(kind)
-        yield telling.stated(f"{at}.{field or _NAMES.get(name, name)}", value, road.lanes.where.get(name))
+        yield builder.stated(f"{at}.{field or _NAMES.get(name, name)}", value, road.lanes.where.get(name))
 
 
-def _junction(telling: Telling, facts: RoadFacts) -> Iterator[Fact]:
+def _junction(builder: FactBuilder, facts: RoadFacts) -> Iterator[Fact]:
     junction = facts.junction
     if junction.kind == "none":
         return
     named = junction.where.get("kind") if junction.stated else None
     if named:
-        yield telling.stated("junction.kind", junction.kind, named)
+        yield builder.stated("junction.kind", junction.kind, named)
     else:
         hint = junction.where.get("kind")
-        yield telling.inferred("junction.kind", junction.kind, "junction.paths of the vehicles", hint)
+        yield builder.inferred("junction.kind", junction.kind, "junction.paths of the vehicles", hint)
     if junction.stem:
         told = junction.where.get("stem")
         field = "junction.stem"
-        yield telling.stated(field, junction.stem, told) if told else telling.inferred(field, junction.stem, "paths")
+        yield builder.stated(field, junction.stem, told) if told else builder.inferred(field, junction.stem, "paths")
     if junction.control != "none":
-        yield telling.stated("junction.control", junction.control, junction.where.get("control"))
+        yield builder.stated("junction.control", junction.control, junction.where.get("control"))
     if junction.stopped:
-        yield telling.inferred("junction.stopped", junction.stopped, "control.legs", junction.where.get("control"))
+        yield builder.inferred("junction.stopped", junction.stopped, "control.legs", junction.where.get("control"))

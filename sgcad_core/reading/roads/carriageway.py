@@ -18,7 +18,7 @@ MOST = 7
 
 
 @dataclass(frozen=True)
-class Way:
+class DirectionLanes:
     """One direction of travel."""
 
     approach: int
@@ -31,14 +31,14 @@ class Way:
 class Carriageway:
     """Both directions of a road; `stated`: the text gives a number (else it is a default)."""
 
-    ways: Mapping[Compass, Way]
+    ways: Mapping[Compass, DirectionLanes]
     center_turn_lane: bool = False
     total: int | None = None
     stated: bool = False
 
-    def way(self, toward: Compass) -> Way:
+    def way(self, toward: Compass) -> DirectionLanes:
         """The direction's lanes; none at all against a one-way road."""
-        return self.ways.get(toward, Way(0, 0))
+        return self.ways.get(toward, DirectionLanes(0, 0))
 
 
 def carriageway(
@@ -76,11 +76,11 @@ def _one_way(facts: LaneFacts, toward: Compass, used: Mapping[Compass, int]) -> 
     return Carriageway({toward: _way(facts, toward, count)}, total=count, stated=True)
 
 
-def _way(facts: LaneFacts, toward: Compass, approach: int) -> Way:
+def _way(facts: LaneFacts, toward: Compass, approach: int) -> DirectionLanes:
     turns = facts.turns.get(toward, ())
     left, right = turns.count("left"), turns.count("right")
     approach = min(max(approach, 1), MOST)
-    return Way(approach, max(1, approach - left - right), left, right)
+    return DirectionLanes(approach, max(1, approach - left - right), left, right)
 
 
 def _turn_lanes(facts: LaneFacts, toward: Compass) -> int:
@@ -89,7 +89,7 @@ def _turn_lanes(facts: LaneFacts, toward: Compass) -> int:
 
 def _two_way(
     facts: LaneFacts, ends: tuple[Compass, Compass], used: Mapping[Compass, int], default: int
-) -> dict[Compass, Way]:
+) -> dict[Compass, DirectionLanes]:
     told = {way: facts.toward[way] for way in ends if way in facts.toward and not _only_turns(facts, way)}
     if not told and not facts.each_way and facts.total:
         return _split(facts, ends)
@@ -103,7 +103,9 @@ def _two_way(
     ways = {way: _way(facts, way, count) for way, count in told.items()}
     if _spare(facts, told) == 1 and "left" in facts.turns.get("any", ()):
         first = ways[ends[0]]
-        ways[ends[0]] = Way(min(first.approach + 1, MOST), first.through, first.left_turn + 1, first.right_turn)
+        ways[ends[0]] = DirectionLanes(
+            min(first.approach + 1, MOST), first.through, first.left_turn + 1, first.right_turn
+        )
     return ways
 
 
@@ -134,7 +136,7 @@ def _other_side(facts: LaneFacts, ends: tuple[Compass, Compass], told: dict[Comp
     return {way: count, other: rest}
 
 
-def _split(facts: LaneFacts, ends: tuple[Compass, Compass]) -> dict[Compass, Way]:
+def _split(facts: LaneFacts, ends: tuple[Compass, Compass]) -> dict[Compass, DirectionLanes]:
     """A total over both directions. Of an odd one the spare lane is a turn lane of each approach.
 
     Of a divided road "three-lane" can only be meant of one carriageway.
@@ -145,5 +147,5 @@ def _split(facts: LaneFacts, ends: tuple[Compass, Compass]) -> dict[Compass, Way
         return {way: _way(facts, way, total) for way in ends}
     if total % 2 and total > 1 and not facts.center_turn_lane:
         spare = [way for way in ends if _turn_lanes(facts, way)] or list(ends)
-        return {way: Way(half + 1, half, 1) if way in spare else Way(half, half) for way in ends}
+        return {way: DirectionLanes(half + 1, half, 1) if way in spare else DirectionLanes(half, half) for way in ends}
     return {way: _way(facts, way, half + _turn_lanes(facts, way)) for way in ends}

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from sgcad_core.reading.language import of_role, rule
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.lanes import LaneFacts
 
 _RULES = {
@@ -17,7 +17,7 @@ _RULES = {
 """Fields of `LaneFacts` and the rules that read them; what a field of direction says of N is "toward N"."""
 
 
-def stated(facts: LaneFacts) -> dict[str, Any]:
+def stated_values(facts: LaneFacts) -> dict[str, Any]:
     """What is stated, a value a field, and of the fields by direction a value a direction."""
     plain = {
         "total": facts.total, "each_way": facts.each_way, "one_way": facts.one_way, "own": facts.own,
@@ -29,30 +29,30 @@ def stated(facts: LaneFacts) -> dict[str, Any]:
     return {name: value for name, value in plain.items() if value is not None} | ways
 
 
-def heard(facts: LaneFacts, number: int, said: str) -> LaneFacts:
+def with_sources(facts: LaneFacts, number: int, said: str) -> LaneFacts:
     """The facts with their place: a sentence and the words of it that were read."""
-    return replace(facts, where={name: _cue(name, value, number, said) for name, value in stated(facts).items()})
+    return replace(facts, where={name: _cue(name, value, number, said) for name, value in stated_values(facts).items()})
 
 
-def both(merged: LaneFacts, first: LaneFacts, more: LaneFacts) -> LaneFacts:
+def with_sources_of_both(merged: LaneFacts, first: LaneFacts, more: LaneFacts) -> LaneFacts:
     """`merged` with the places of whichever statement each of its facts is from; of both, the first."""
-    kept, told = stated(merged), stated(first)
+    kept, told = stated_values(merged), stated_values(first)
     where = {n: c for n, c in {**more.where, **first.where}.items() if n in kept}
     late = {n: c for n, c in more.where.items() if n in kept and told.get(n) != kept[n]}
     return replace(merged, where=where | late)
 
 
-def also(facts: LaneFacts, name: str, source: str) -> Mapping[str, Cue]:
+def derived_sources(facts: LaneFacts, name: str, basis: str) -> Mapping[str, Source]:
     """The places with that of a fact that follows from another one."""
-    cue = facts.where.get(source)
-    return {**facts.where, **({name: cue} if cue else {})}
+    source = facts.where.get(basis)
+    return {**facts.where, **({name: source} if source else {})}
 
 
-def _cue(name: str, value: object, number: int, said: str) -> Cue:
+def _cue(name: str, value: object, number: int, said: str) -> Source:
     for by in _rules_of(name.split()[0], value):
         if match := rule(by).search(said):
-            return Cue(number, match[0].strip(" ,;."), by)
-    return Cue(number, "", "lanes.item")  # told by several counts together
+            return Source(number, match[0].strip(" ,;."), by)
+    return Source(number, "", "lanes.item")  # told by several counts together
 
 
 def _rules_of(name: str, value: object) -> tuple[str, ...]:

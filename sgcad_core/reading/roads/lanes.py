@@ -11,10 +11,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from sgcad_core.reading.language import rule, values
-from sgcad_core.reading.motion.motion_record import Cue
-from sgcad_core.reading.roads.median import divided_and_median
-from sgcad_core.reading.roads.turn_lanes import spelled_out
+from sgcad_core.reading.language import of_role, rule, values
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.compass import WORDS
 from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.records.specs import Compass, Median
@@ -55,8 +53,8 @@ class LaneFacts:
     """ "one lane of travel", of whichever direction: the whole of a one-way street, else one of several."""
     own: int | None = None
     """Lanes in the direction of the vehicle that the text speaks of: "in lane two of three lanes"."""
-    where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
-    """Where each of them was read, by the names of `sgcad_core.reading.roads.lane_sources.stated`."""
+    where: Mapping[str, Source] = field(default_factory=dict, compare=False, repr=False)
+    """Where each of them was read, by the names of `sgcad_core.reading.roads.lane_sources.stated_values`."""
 
     @property
     def empty(self) -> bool:
@@ -68,21 +66,11 @@ class LaneFacts:
 _TOTAL = rule("lanes.total")
 _EACH = rule("lanes.each")
 _OWN = rule("lanes.own")
-_ONE_WAY = rule("lanes.one_way")
-_TWO_WAY = rule("lanes.two_way")
-_CENTER_TURN = rule("lanes.center_turn")
 
 # ------------------------------------------------------------------ lane items
 
 
-_ITEM = rule("lanes.item")
-_SUBJECT = rule("lanes.subject")
-_WITHIN = rule("lanes.within")
-_EACH_TURN = rule("lanes.each_turn")
-
 _NUMBERED_TURN = rule("lanes.numbered_turn")
-_ONE_LANE = rule("lanes.one_lane")
-_CROSSED = rule("lanes.crossed")
 
 
 @dataclass(frozen=True)
@@ -98,7 +86,7 @@ class _Item:
 
 def lane_facts(text: str) -> LaneFacts:
     """Lanes that a piece of normalized text states, read as one road's. Never fails; unknown is empty."""
-    marked = _CENTER_TURN.sub(" CENTERLANE ", _NUMBERED_TURN.sub(r"the \1 \2 lane", spelled_out(text)))
+    marked = rule("lanes.center_turn").sub(" CENTERLANE ", _NUMBERED_TURN.sub(r"the \1 \2 lane", spelled_out(text)))
     each = _EACH.search(marked)
     own = _OWN.search(marked)
     marked = _OWN.sub(" ", marked)
@@ -107,9 +95,9 @@ def lane_facts(text: str) -> LaneFacts:
     known = _directions(counted, items)
     toward, turns = _sums(items, known)
     _numbered_turns(text, toward, turns)
-    each_turn = _EACH_TURN.search(counted)
+    each_turn = rule("lanes.each_turn").search(counted)
     turns |= {"each": ("left" if each_turn[1].lower() == "left" else "right",)} if each_turn else {}
-    one_way, two_way = bool(_ONE_WAY.search(text)), bool(_TWO_WAY.search(text))
+    one_way, two_way = bool(rule("lanes.one_way").search(text)), bool(rule("lanes.two_way").search(text))
     alone = one_way and not two_way
     total = _total(_EACH.sub("EACH", marked), counted, items, known, alone)
     divided, median = divided_and_median(text)
@@ -118,7 +106,7 @@ def lane_facts(text: str) -> LaneFacts:
         one_way=one_way if one_way != two_way else None,
         one_way_toward=_one_way_toward(text) if alone else None,
         center_turn_lane="CENTERLANE" in marked, median=median, divided=divided,
-        one_lane=bool(_ONE_LANE.search(text)), own=number(own[1]) if own else None,
+        one_lane=bool(rule("lanes.one_lane").search(text)), own=number(own[1]) if own else None,
     )  # fmt: skip
 
 
@@ -135,24 +123,22 @@ def _total(text: str, counted: str, items: list[_Item], known: list[Compass | No
     said = [number(n) for n in _TOTAL.findall(text)]
     if said:
         return said[0]
+    crossed = rule("lanes.crossed")
     loose = [
         item.count for item, way in zip(items, known, strict=True)
-        if way is None and item.plain and (item.count > 1 or one_way) and not _CROSSED.search(counted[: item.place])
+        if way is None and item.plain and (item.count > 1 or one_way) and not crossed.search(counted[: item.place])
     ]  # fmt: skip
     return loose[0] if len(loose) == 1 else None
 
 
-_FLOW = rule("lanes.flow")
-
-
 def _one_way_toward(text: str) -> Compass | None:
-    near = _FLOW.search(text)
+    near = rule("lanes.flow").search(text)
     return compass(near[1] or near[2]) if near else None
 
 
 def _items(text: str) -> Iterator[_Item]:
     """Lane counts in order: "two eastbound lanes", "a left turn lane", "one lane for northbound traffic"."""
-    for match in _ITEM.finditer(text):
+    for match in rule("lanes.item").finditer(text):
         mods, count = (match["mods"] or "").lower(), match["count"] or match["turncount"] or match["barecount"]
         word = rule("common.bound").search(mods)
         behind = match["behind1"] or match["behind2"] or match["bare"] or (word[0] if word else None)
@@ -163,8 +149,9 @@ def _items(text: str) -> Iterator[_Item]:
         plain = not turn and not rule("lanes.no_plain_lane").search(mods)
         if count.lower() == "the" and not match["turn"] and not behind:
             continue
-        yield _Item(number(count), compass(behind) if behind else None, turn, plain,
-                    bool(_WITHIN.search(text[: match.start()])), count.lower() == "the", match.start())  # fmt: skip
+        within = bool(rule("lanes.within").search(text[: match.start()]))
+        toward = compass(behind) if behind else None
+        yield _Item(number(count), toward, turn, plain, within, count.lower() == "the", match.start())
 
 
 def _counts(items: list[_Item], total: re.Match[str] | None) -> list[_Item]:
@@ -207,7 +194,7 @@ def _headline(known: list[Compass | None], items: list[_Item]) -> int | None:
 def _subject(text: str, place: int) -> Compass | None:
     """ "The southbound side had ..." in the clause before the item."""
     clause = rule("lanes.clause_end").split(text[:place])[-1]
-    found = list(_SUBJECT.finditer(clause))
+    found = list(rule("lanes.subject").finditer(clause))
     return compass(found[-1]["dir"]) if found else None
 
 
@@ -232,3 +219,30 @@ def _count(items: list[_Item]) -> int:
     turning = sum(max(i.count, len(i.turn)) for i in items if i.turn)
     beside = sum(max(i.count, len(i.turn)) for i in items if i.turn and not i.inside)
     return max(plain, through + turning) if plain and through else max(plain + through + beside, turning)
+
+
+def divided_and_median(text: str) -> tuple[bool | None, Median | None]:
+    """Whether the road is said to be divided, and by what; painted lines alone do not divide."""
+    if rule("median.undivided").search(text):
+        return False, None
+    text = rule("median.elsewhere").sub(" ", text)
+    kind = next((told.yields["median"] for told in of_role("median_kind") if told.search(text)), None)
+    said = bool(rule("median.divided").search(rule("median.painted_line").sub(" ", text)))
+    if kind == "painted":
+        return said or None, kind
+    if said or (kind and rule("median.median_word").search(text)):
+        return True, kind
+    return None, None
+
+
+_IN_EACH = rule("turn_lanes.in_each")
+"""Not "in the lane for left-turning traffic": a vehicle may wait there."""
+
+
+def spelled_out(text: str) -> str:
+    """Normalized text with its turn lanes in plain words: "a lane for left turns" is a left-turn lane, and of "two
+    lanes and a left turn lane in each direction" both are told for each direction."""
+    for lane in of_role("lane_for_turns"):
+        text = lane.sub(r"\2-turn lane\1", text)
+    text = rule("turn_lanes.only").sub(r"\1-turn \2", text)
+    return _IN_EACH.sub(r"\1 lanes in each direction with a \2-turn lane in each direction", text)

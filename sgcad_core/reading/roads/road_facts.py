@@ -1,7 +1,7 @@
 """The roads of a crash as its narrative tells them.
 
-Roads with lanes as stated, their junction, limits and curves, and who is on them. What the text leaves open
-stays None here; `sgcad_core.reading.layout.layout_facts` fills it. Knows no road network format.
+Roads with lanes as stated, their junction, limits, curves and vehicles. What the text leaves open stays None here;
+`sgcad_core.reading.layout.layout_facts` fills it. Knows no road network format.
 """
 
 from __future__ import annotations
@@ -30,14 +30,13 @@ from sgcad_core.reading.junctions.approach_lanes import Approaches, approaches_o
 from sgcad_core.reading.junctions.junction import CIRCLE_LANES, JunctionFacts, junction_of
 from sgcad_core.reading.junctions.unsupported_places import unsupported_places
 from sgcad_core.reading.language import of_role, rule
-from sgcad_core.reading.motion.absolute_headings import oriented
+from sgcad_core.reading.motion.absolute_headings import turned_to_roads
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.lanes import LaneFacts
-from sgcad_core.reading.roads.road_details import Curve, curves
+from sgcad_core.reading.roads.road_details import Curve, SpeedLimit, curves, speed_limits
 from sgcad_core.reading.roads.road_mentions import Kind, RoadMention, axis_of, road_mentions
-from sgcad_core.reading.roads.road_merge import GatheredRoad, gather
-from sgcad_core.reading.roads.speed_limits import SpeedLimit, speed_limits
+from sgcad_core.reading.roads.road_merge import MergedRoad, merge_roads
 from sgcad_core.reading.roads.work_zones_openings import (
     CLOSED_LANES,
     ClosedLanes,
@@ -65,7 +64,7 @@ class RoadFact:
     curve: tuple[tuple[Compass, Literal["left", "right"]], ...] = ()
     """(travel direction, side) of each bend told."""
     rural: bool = False
-    where: Mapping[str, Cue] = field(default_factory=dict, compare=False, repr=False)
+    where: Mapping[str, Source] = field(default_factory=dict, compare=False, repr=False)
     """Where axis, limit, each curve ("curve N") and "rural" were read; lanes know their own."""
 
     @property
@@ -79,7 +78,7 @@ class RoadFacts:
     """All roads of a crash, the streets first; `crash`: the vehicles that the roads must carry.
 
     Where no heading is told, the headings in `crash` are turned to fit the roads; a told lane ("in the eastbound
-    lanes") then makes them `oriented`.
+    lanes") then makes them `turned_to_roads`.
     """
 
     roads: tuple[RoadFact, ...]
@@ -91,11 +90,11 @@ class RoadFacts:
     beside: tuple[Beside, ...] = ()
     """What the story tells of the edges of its roads."""
     crosswalk: bool = False
-    """Whether it tells a marked crosswalk, or of somebody on foot who was struck at a junction."""
+    """Whether it tells a marked crosswalk, or a pedestrian struck at a junction."""
     urban: bool = False
     closed: ClosedLanes | None = None
     """Lanes that a work zone closes, where they can be drawn."""
-    opening: Cue | None = None
+    opening: Source | None = None
     """Where an opening in the median is told, if it can be drawn."""
     leaves: bool = False
     """Whether the ramp that is told leads off the road, not onto it."""
@@ -116,41 +115,41 @@ class RoadFacts:
         return tuple(r for r in self.roads if r.kind not in JOINING)
 
 
-def roads_of(told: tuple[Statement, ...], who: Roster, crash: CrashFacts) -> RoadFacts:
+def roads_of(statements: tuple[Statement, ...], roster: Roster, crash: CrashFacts) -> RoadFacts:
     """The roads that resolved sentences tell, and the crash turned to fit them. A text without roads gives none."""
-    mentions, crash = _alleys(road_mentions(_telling(told), who.ids), crash)
-    crash = oriented(crash, mentions, told)
+    mentions, crash = _alleys(road_mentions(_telling(statements), roster.ids), crash)
+    crash = turned_to_roads(crash, mentions, statements)
     driven = tuple(v for v in crash.vehicles if not actor_kind(v.kind).walks) or crash.vehicles
     headings = {v.id: v.heading for v in driven if v.heading}
-    limits, bends = speed_limits(told, headings), curves(told, headings)
-    gathered = gather(mentions, headings) or [GatheredRoad(None) for _ in limits[:1]]
-    approaches = approaches_of(told)
-    junction = junction_of(told, driven, gathered, approaches)
-    rural = _rural(told)
+    limits, bends = speed_limits(statements, headings), curves(statements, headings)
+    gathered = merge_roads(mentions, headings) or [MergedRoad(None) for _ in limits[:1]]
+    approaches = approaches_of(statements)
+    junction = junction_of(statements, driven, gathered, approaches)
+    rural = _rural(statements)
     roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)
     roads = _placed(tuple(_center_lane_elsewhere(r, roads) for r in roads), approaches)
-    merge_lane = any(_MERGE_LANE.search(t.text) for t in told)
-    story = [t.text for t in told if t.role in STORY_ROLES]
+    merge_lane = any(_MERGE_LANE.search(t.text) for t in statements)
+    story = [t.text for t in statements if t.role in STORY_ROLES]
     beside = tuple(rule.yields["beside"] for rule in of_role("beside") if any(map(rule.search, story)))
     walked = any(map(_CROSSWALK.search, story)) or (junction.kind != "none" and _somebody_walks(crash))
     urban = any(map(_URBAN.search, story))
     notes = _open_ends(roads, junction, crash)
-    in_gore = in_gores(told)
+    in_gore = in_gores(statements)
     exits = any(map(_EXIT_RAMP.search, story)) or bool(in_gore)
     leaves = exits and not any(map(_ENTRANCE_RAMP.search, story))
-    told_closed = closed_lanes(told, driven)
+    told_closed = closed_lanes(statements, driven)
     closed = told_closed if told_closed and _closable(told_closed, junction, roads) else None
-    opens = median_opening(told)
+    opens = median_opening(statements)
     opening = opens if junction.kind == "none" and not closed else None
     gore = in_gore if junction.kind == RAMP else {}
     crash = replace(crash, gore=gore)
     places = {
-        WORK_ZONE: (names_closure(told), closed),
+        WORK_ZONE: (names_closure(statements), closed),
         MEDIAN_OPENING: (opens, opening),
-        GORE: (names_gore(told), gore),
+        GORE: (names_gore(statements), gore),
     }
     roads = tuple(uncounted(r) if r.axis and _listed(approaches, junction, r.axis) else r for r in roads)
-    junction = replace(junction, unsupported=_undrawn(unsupported_places(told), places))
+    junction = replace(junction, unsupported=_undrawn(unsupported_places(statements), places))
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")
     told_places = (merge_lane, beside, walked, urban, closed, opening, leaves)
@@ -174,7 +173,7 @@ def _closable(closed: ClosedLanes, junction: JunctionFacts, roads: tuple[RoadFac
 
 
 def _alleys(mentions: tuple[RoadMention, ...], crash: CrashFacts) -> tuple[tuple[RoadMention, ...], CrashFacts]:
-    """An alley is the road of a crash within it, into which nobody just turns; else it joins as driveways do."""
+    """An alley is the road of a crash within it, if no vehicle just turns into it; else it joins as driveways do."""
     within = {v for m in mentions if m.kind == ALLEY and m.how == "on" for v in m.vehicles}
     joining = {v.id for v in crash.vehicles if ALLEY in (v.origin, v.target)}
     turns = {v.id for v in crash.vehicles if v.maneuver in QUARTER_DEG}
@@ -193,13 +192,13 @@ def _somebody_walks(crash: CrashFacts) -> bool:
     return any(actor_kind(other.kind).walks for other in crash.others)
 
 
-def _rural(told: tuple[Statement, ...]) -> Cue | None:
+def _rural(statements: tuple[Statement, ...]) -> Source | None:
     """Where the text says that the crash was in the country."""
-    story = (t for t in told if t.role in CRASH_ROLES)
-    return next((Cue(t.number, m[0], _RURAL.id) for t in story if (m := _RURAL.search(t.text))), None)
+    story = (t for t in statements if t.role in CRASH_ROLES)
+    return next((Source(t.number, m[0], _RURAL.id) for t in story if (m := _RURAL.search(t.text))), None)
 
 
-def _with_rural(road: RoadFact, rural: Cue | None) -> RoadFact:
+def _with_rural(road: RoadFact, rural: Source | None) -> RoadFact:
     return replace(road, rural=True, where={**road.where, "rural": rural}) if rural else road
 
 
@@ -218,7 +217,7 @@ def uncounted(road: RoadFact) -> RoadFact:
 
 
 def _placed(roads: tuple[RoadFact, ...], approaches: Approaches) -> tuple[RoadFact, ...]:
-    """The roads, streets on other axes than those of the two roads whose approaches are listed put there."""
+    """The roads, with streets on other axes than those of the two roads whose approaches are listed put there."""
     axes = approaches.crossing
     streets = [r for r in roads if r.kind not in JOINING and r.axis]
     if len(axes) != 2 or {r.axis for r in streets} <= {*axes}:
@@ -231,7 +230,7 @@ def _placed(roads: tuple[RoadFact, ...], approaches: Approaches) -> tuple[RoadFa
 
 
 def _center_lane_elsewhere(road: RoadFact, roads: tuple[RoadFact, ...]) -> RoadFact:
-    """A two-lane road has no center turn lane where the other road has one: somebody only turned into that."""
+    """A two-lane road has no center turn lane where the other road has one: a vehicle only turned into that."""
     others = any(r.lanes.center_turn_lane and r.lanes.total != 2 for r in roads if r is not road)
     if not (others and road.lanes.center_turn_lane and road.lanes.total == 2):
         return road
@@ -245,20 +244,20 @@ _CROSSWALK = rule("roads.crosswalk")
 _EXIT_RAMP, _ENTRANCE_RAMP = rule("roads.exit_ramp"), rule("roads.entrance_ramp")
 
 
-def _telling(told: tuple[Statement, ...]) -> list[Statement]:
+def _telling(statements: tuple[Statement, ...]) -> list[Statement]:
     """Sentences that may describe roads: the story, then restraint and other sentences that also name lanes."""
-    story = [_without_circle(t) for t in told if t.role in STORY_ROLES]
-    return story + [t for t in told if t.role in ("restraint", "towing", "injury") and "lane" in t.text]
+    story = [_without_circle(t) for t in statements if t.role in STORY_ROLES]
+    return story + [t for t in statements if t.role in ("restraint", "towing", "injury") and "lane" in t.text]
 
 
-def _without_circle(told: Statement) -> Statement:
+def _without_circle(statement: Statement) -> Statement:
     """The sentence without the lanes of a roundabout, which are those of no road, and without closed ones."""
-    return told._replace(text=CLOSED_LANES.sub("some were closed", CIRCLE_LANES.sub(ROUNDABOUT, told.text)))
+    return statement._replace(text=CLOSED_LANES.sub("some were closed", CIRCLE_LANES.sub(ROUNDABOUT, statement.text)))
 
 
 def _road(
-    road: GatheredRoad,
-    all_roads: list[GatheredRoad],
+    road: MergedRoad,
+    all_roads: list[MergedRoad],
     limits: tuple[SpeedLimit, ...],
     bends: tuple[Curve, ...],
     headings: dict[str, Compass],
@@ -268,16 +267,16 @@ def _road(
     lead = (along[0] if along else road.axis) if streets and road is streets[0] else None
     limit = _limit(road, limits) if road.kind != DRIVEWAY else None
     curves = _bends(road, lead, bends)
-    where = {f"curve {way}": bend.cue for way, bend in curves.items()}
-    where |= {"axis": Cue(road.axis_at, "", "mentions.axis")} if road.axis_at is not None else {}
-    where |= {"speed_limit": limit.cue} if limit else {}
+    where = {f"curve {way}": bend.source for way, bend in curves.items()}
+    where |= {"axis": Source(road.axis_at, "", "mentions.axis")} if road.axis_at is not None else {}
+    where |= {"speed_limit": limit.source} if limit else {}
     return RoadFact(
         road.axis, road.kind, road.lanes, tuple(road.vehicles), road.cross,
         limit.mph if limit else None, tuple((way, bend.side) for way, bend in curves.items()), where=where,
     )  # fmt: skip
 
 
-def _limit(road: GatheredRoad, limits: tuple[SpeedLimit, ...]) -> SpeedLimit | None:
+def _limit(road: MergedRoad, limits: tuple[SpeedLimit, ...]) -> SpeedLimit | None:
     """The road's own limit, else one that holds for all."""
     own = [limit for limit in limits if limit.axis and limit.axis == road.axis]
     cross = [limit for limit in limits if limit.cross and not limit.axis and road.cross]
@@ -285,7 +284,7 @@ def _limit(road: GatheredRoad, limits: tuple[SpeedLimit, ...]) -> SpeedLimit | N
     return next(iter(own + cross + everywhere), None)
 
 
-def _bends(road: GatheredRoad, lead: Compass | None, bends: tuple[Curve, ...]) -> dict[Compass, Curve]:
+def _bends(road: MergedRoad, lead: Compass | None, bends: tuple[Curve, ...]) -> dict[Compass, Curve]:
     """Bends of the road's own directions; one without belongs to the main road as its first vehicle drives (`lead`)."""
     found: dict[Compass, Curve] = {}
     for bend in bends:

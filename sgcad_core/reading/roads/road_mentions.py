@@ -1,7 +1,7 @@
-"""Every road that a report mentions, in order: noun phrase, compass axis, who drives on it, lanes stated.
+"""Every road that a report mentions, in order: noun phrase, compass axis, vehicles on it, lanes stated.
 
-A mention is the noun phrase around a road word ("the intersecting two-lane, two-way road") with what stands
-behind it up to the next mention. Which mentions are one and the same road is decided elsewhere.
+A mention is the noun phrase around a road word ("the intersecting two-lane, two-way road") with what stands behind it
+up to the next mention. `sgcad_core.reading.roads.road_merge` joins mentions of one road.
 """
 
 from __future__ import annotations
@@ -14,9 +14,8 @@ from typing import Literal
 from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.roads.lane_sources import heard
+from sgcad_core.reading.roads.lane_sources import with_sources
 from sgcad_core.reading.roads.lanes import LaneFacts, lane_facts
-from sgcad_core.reading.roads.road_phrases import noun_phrases
 from sgcad_core.reading.text.compass import COMPASS, compass_of
 from sgcad_core.records.specs import Compass
 
@@ -60,38 +59,30 @@ def axis_in(text: str) -> Compass | None:
 
 
 _PAIR = rule("mentions.pair")
-
-_RUNS = rule("mentions.runs")
-_ON = rule("mentions.on")
-_LEFT_IT = rule("mentions.left_it")
-_FROM = rule("mentions.from")
-_ONTO = rule("mentions.onto")
-_RELATIVE = rule("mentions.relative")
 _VEHICLE = rule("mentions.vehicle")
-_BOTH_VEHICLES = rule("mentions.both_vehicles")
 
 
-def road_mentions(told: Iterable[Statement], ids: tuple[str, ...]) -> tuple[RoadMention, ...]:
+def road_mentions(statements: Iterable[Statement], ids: tuple[str, ...]) -> tuple[RoadMention, ...]:
     """Mentions in order of the text. `ids`: all vehicles, for "both vehicles"."""
-    return tuple(mention for sentence in told for mention in _sentence(sentence, ids))
+    return tuple(mention for sentence in statements for mention in _sentence(sentence, ids))
 
 
-def _sentence(told: Statement, ids: tuple[str, ...]) -> Iterator[RoadMention]:
-    text = told.text
+def _sentence(statement: Statement, ids: tuple[str, ...]) -> Iterator[RoadMention]:
+    text = statement.text
     spans = list(noun_phrases(text))
     if not spans:
-        facts = heard(lane_facts(text), told.number, text)
+        facts = with_sources(lane_facts(text), statement.number, text)
         if not facts.empty:
-            yield from _by_axis(_bare(told, facts))
+            yield from _by_axis(_bare(statement, facts))
         return
     for index, (start, head_start, end) in enumerate(spans):
         stop = spans[index + 1][0] if index + 1 < len(spans) else len(text)
         lead = text[spans[index - 1][2] if index else 0 : start]
-        yield _mention(told, (lead, text[start:end], text[end:stop]), text[head_start:end], (index == 0, ids))
+        yield _mention(statement, (lead, text[start:end], text[end:stop]), text[head_start:end], (index == 0, ids))
 
 
 def _by_axis(mention: RoadMention) -> Iterator[RoadMention]:
-    """A mention without a road word, once for each axis whose lanes it tells."""
+    """A mention without a road word, once for each axis of the lanes that it tells."""
     ways = {axis_of(c) for c in COMPASS if c in mention.lanes.toward}
     if len(ways) < 2:
         yield mention
@@ -111,10 +102,12 @@ def _compass(word: str) -> Compass:
     return next(c for c in COMPASS if c == word)
 
 
-def _bare(told: Statement, facts: LaneFacts) -> RoadMention:
-    axis = _axis_of_lanes(facts) or axis_in(told.text)
-    who = tuple(dict.fromkeys(_VEHICLE.findall(told.text)))[:1]
-    return RoadMention(told.text, "road", axis, None, None, True, who, "on" if who else None, facts, told.number)
+def _bare(statement: Statement, facts: LaneFacts) -> RoadMention:
+    axis = _axis_of_lanes(facts) or axis_in(statement.text)
+    who = tuple(dict.fromkeys(_VEHICLE.findall(statement.text)))[:1]
+    return RoadMention(
+        statement.text, "road", axis, None, None, True, who, "on" if who else None, facts, statement.number
+    )
 
 
 def _axis_of_lanes(facts: LaneFacts) -> Compass | None:
@@ -123,12 +116,12 @@ def _axis_of_lanes(facts: LaneFacts) -> Compass | None:
 
 
 def _mention(
-    told: Statement, parts: tuple[str, str, str], head: str, place: tuple[bool, tuple[str, ...]]
+    statement: Statement, parts: tuple[str, str, str], head: str, place: tuple[bool, tuple[str, ...]]
 ) -> RoadMention:
     lead, phrase, behind = parts
     first, ids = place
     said = (_lead_tail(lead) if first else "") + phrase + behind
-    facts = heard(lane_facts(said), told.number, said)
+    facts = with_sources(lane_facts(said), statement.number, said)
     vehicles, how = _drivers(lead, behind, ids)
     toward = _toward(phrase)
     axis = axis_in(phrase) or (axis_of(toward) if toward else None) or _running(behind) or _lane_direction(lead)
@@ -137,7 +130,7 @@ def _mention(
     return RoadMention(
         said, _kind(phrase, head, lead), axis or _axis_of_lanes(facts), toward, _relation(phrase, lead),
         bool(rule("mentions.definite").match(phrase)),
-        vehicles, how, facts, told.number,
+        vehicles, how, facts, statement.number,
     )  # fmt: skip
 
 
@@ -157,16 +150,13 @@ def _toward(phrase: str) -> Compass | None:
 
 def _running(behind: str) -> Compass | None:
     """ "... ran north and south": the axis told right behind the noun."""
-    runs = _RUNS.match(behind)
+    runs = rule("mentions.runs").match(behind)
     return axis_in(behind[runs.end() : runs.end() + 40]) if runs else None
-
-
-_LANE_OF = rule("mentions.lane_of")
 
 
 def _lane_direction(lead: str) -> Compass | None:
     """ "in the eastbound lane of a": the road's axis."""
-    found = _LANE_OF.search(lead)
+    found = rule("mentions.lane_of").search(lead)
     way = compass_of(found[1]) if found else None
     return axis_of(way) if way else None
 
@@ -178,22 +168,19 @@ def _travel_axis(lead: str) -> Compass | None:
     return axis_of(way) if way else None
 
 
-_MEETS = rule("mentions.meets")
-
-
 def _relation(phrase: str, lead: str) -> Relation | None:
     """As the phrase says, else "other" behind "intersects", "intersection with"."""
     found = next((told.yields["relation"] for told in of_role("relation") if told.search(phrase)), None)
-    return found or ("other" if _MEETS.search(lead) and not _VEHICLE.search(lead[-40:]) else None)
+    return found or ("other" if rule("mentions.meets").search(lead) and not _VEHICLE.search(lead[-40:]) else None)
 
 
 def _drivers(lead: str, behind: str, ids: tuple[str, ...]) -> tuple[tuple[str, ...], How | None]:
-    """Who drives on the road mentioned, told by the verb before or the relative clause behind."""
-    relative = _RELATIVE.match(behind)
+    """Vehicles on the road mentioned, told by the verb before or the relative clause behind."""
+    relative = rule("mentions.relative").match(behind)
     if relative and rule("mentions.relative_begins").match(behind):
         return (relative[1],), "on"
     vehicles = [m for m in _VEHICLE.finditer(lead) if m[0] in ids]
-    everyone = list(_BOTH_VEHICLES.finditer(lead))
+    everyone = list(rule("mentions.both_vehicles").finditer(lead))
     last = max((m.end() for m in vehicles + everyone), default=-1)
     if last < 0:
         return (), None
@@ -214,12 +201,12 @@ def _joined(lead: str, vehicles: list[re.Match[str]]) -> tuple[str, ...]:
 
 
 def _how(tail: str) -> How | None:
-    if _FROM.search(tail):
+    if rule("mentions.from").search(tail):
         return "from"
-    if _ONTO.search(tail):
+    if rule("mentions.onto").search(tail):
         return "onto"
-    on = _ON.search(tail)
-    return "on" if on and not _LEFT_IT.search(tail) else None
+    on = rule("mentions.on").search(tail)
+    return "on" if on and not rule("mentions.left_it").search(tail) else None
 
 
 def _kind(phrase: str, head: str, lead: str) -> Kind:
@@ -233,3 +220,52 @@ def _kind(phrase: str, head: str, lead: str) -> Kind:
     if rule("mentions.freeway").search(phrase) and not rule("mentions.aside").search(lead):
         return "freeway"
     return "crossroads" if "intersection" in word else "road"
+
+
+_STOP = frozenset({
+    "a", "an", "the", "this", "that", "these", "another", "each", "both", "all", "of", "on", "in", "at", "into",
+    "onto", "from", "to", "along", "near", "by", "for", "was", "is", "were", "are", "had", "has", "with", "where",
+    "which", "when", "toward", "towards", "between", "approaching", "entered", "entering", "entire", "down", "up",
+    "upon", "across", "over", "through", "past", "it", "its", "his", "her", "their", "as", "before", "after", "off",
+    "around", "than", "driver", "s", "crossed", "exited", "exiting", "two-vehicle", "while", "but", "there",
+})  # fmt: skip
+_DETERMINERS = ("a", "an", "the", "this", "that", "another", "each", "both", "all", "these")
+
+
+def noun_phrases(text: str) -> Iterator[tuple[int, int, int]]:
+    """(start, start of the road word, end) of each road's noun phrase; of "freeway entrance ramp" the last word."""
+    held: tuple[int, int, int] | None = None
+    for head in rule("road_phrases.head").finditer(text):
+        start = _phrase_start(text, head.start())
+        if "intersection" in head[0].lower() and "-lane" not in text[start : head.start()]:
+            continue
+        if held and _in_brackets(text[held[2] : head.start()]):
+            continue
+        if held and start >= held[2]:
+            yield held
+        held = (min(start, held[0]) if held and start < held[2] else start, head.start(), head.end())
+    if held:
+        yield held
+
+
+def _in_brackets(between: str) -> bool:
+    return between.count("(") > between.count(")")
+
+
+def _phrase_start(text: str, at: int) -> int:
+    """Back over the modifiers to the determiner, or to the word that cannot stand in a noun phrase."""
+    start = at
+    for word in reversed(list(rule("road_phrases.word").finditer(text[:at]))[-16:]):
+        token = word[0].strip(",()\"'").lower()
+        if word[0][-1] in ".;:)" or rule("road_phrases.vehicle").fullmatch(token):
+            break
+        if token in _STOP and not _within_pair(text, word.start(), token):
+            return word.start() if token in _DETERMINERS else start
+        start = word.start()
+    return start
+
+
+def _within_pair(text: str, at: int, token: str) -> bool:
+    """The "to" of "east to west"."""
+    before = rule("road_phrases.direction_before").search(text[:at])
+    return token in ("to", "/") and bool(before and rule("road_phrases.direction_behind").match(text[at:]))

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.kinds import ALLEY, JOINING
-from sgcad_core.reading.roads.lane_sources import also, both
+from sgcad_core.reading.roads.lane_sources import derived_sources, with_sources_of_both
 from sgcad_core.reading.roads.lanes import LaneFacts
 from sgcad_core.reading.roads.road_mentions import Kind, RoadMention, axis_of
 from sgcad_core.reading.text.compass import turned
@@ -21,7 +21,7 @@ _OWN_KINDS = (*JOINING, "freeway", ALLEY)
 
 
 @dataclass
-class GatheredRoad:
+class MergedRoad:
     """One road while its mentions come in. `cross`: told as the other, side or intersecting road."""
 
     axis: Compass | None
@@ -59,12 +59,12 @@ def merged(first: LaneFacts, more: LaneFacts) -> LaneFacts:
         center_turn_lane=first.center_turn_lane or more.center_turn_lane, median=first.median or more.median,
         divided=more.divided if first.divided is None else first.divided, one_lane=first.one_lane or more.one_lane,
     )  # fmt: skip
-    return both(found, first, more)
+    return with_sources_of_both(found, first, more)
 
 
-def gather(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]) -> list[GatheredRoad]:
+def merge_roads(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]) -> list[MergedRoad]:
     """Roads in the order of the text; driveways and ramps apart, "both roads" told to every road."""
-    roads: list[GatheredRoad] = []
+    roads: list[MergedRoad] = []
     shared: list[RoadMention] = []
     for mention in mentions:
         if mention.relation == "both":
@@ -77,7 +77,7 @@ def gather(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]) -> 
             continue
         _road_of(roads, mention, headings).take(_with_own(mention, headings))
     if not roads and any(not m.lanes.empty for m in shared):
-        roads.append(GatheredRoad(None))
+        roads.append(MergedRoad(None))
     roads = _settled(roads, headings)
     for mention in shared:
         for road in _streets(roads):
@@ -87,7 +87,7 @@ def gather(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]) -> 
                 road.lanes = replace(road.lanes, one_lane=True)
     for road in roads:
         if road.lanes.one_way and road.lanes.one_lane and not (lane_count(road.lanes) or road.lanes.toward):
-            road.lanes = replace(road.lanes, total=1, where=also(road.lanes, "total", "one_way"))
+            road.lanes = replace(road.lanes, total=1, where=derived_sources(road.lanes, "total", "one_way"))
     return roads
 
 
@@ -96,7 +96,7 @@ def _with_own(m: RoadMention, headings: Mapping[str, Compass]) -> RoadMention:
     way = next((headings[v] for v in m.vehicles if v in headings), None)
     if not m.lanes.own or not way or way in m.lanes.toward:
         return m
-    where = also(m.lanes, f"toward {way}", "own")
+    where = derived_sources(m.lanes, f"toward {way}", "own")
     return replace(m, lanes=replace(m.lanes, toward={**m.lanes.toward, way: m.lanes.own}, where=where))
 
 
@@ -104,11 +104,11 @@ def _informative(m: RoadMention) -> bool:
     return bool(m.axis or m.vehicles or m.relation or not m.lanes.empty or m.kind in _OWN_KINDS)
 
 
-def _special(roads: list[GatheredRoad], mention: RoadMention, headings: Mapping[str, Compass]) -> None:
+def _special(roads: list[MergedRoad], mention: RoadMention, headings: Mapping[str, Compass]) -> None:
     """Driveways and ramps: one road each, they never merge with a street."""
     own = next((r for r in roads if r.kind == mention.kind), None)
     if own is None:
-        own = GatheredRoad(None, kind=mention.kind, cross=True)
+        own = MergedRoad(None, kind=mention.kind, cross=True)
         roads.append(own)
     own.take(replace(mention, axis=mention.axis or _axis_of_vehicles(mention, headings)))
     own.vehicles += [v for v in mention.vehicles if mention.how == "from" and v not in own.vehicles]
@@ -120,11 +120,11 @@ def _axis_of_vehicles(m: RoadMention, headings: Mapping[str, Compass]) -> Compas
     return next((axis_of(headings[v]) for v in m.vehicles if v in headings), None)
 
 
-def _streets(roads: list[GatheredRoad]) -> list[GatheredRoad]:
+def _streets(roads: list[MergedRoad]) -> list[MergedRoad]:
     return [r for r in roads if r.kind not in JOINING]
 
 
-def _road_of(roads: list[GatheredRoad], m: RoadMention, headings: Mapping[str, Compass]) -> GatheredRoad:
+def _road_of(roads: list[MergedRoad], m: RoadMention, headings: Mapping[str, Compass]) -> MergedRoad:
     """The road that a mention means; a new one if none fits."""
     axis = m.axis or (_axis_of_vehicles(m, headings) if m.how == "on" else None)
     streets = _streets(roads)
@@ -135,13 +135,13 @@ def _road_of(roads: list[GatheredRoad], m: RoadMention, headings: Mapping[str, C
     else:
         found = _by_story(streets, m)
     if found is None:
-        found = GatheredRoad(axis, cross=m.relation == "other")
+        found = MergedRoad(axis, cross=m.relation == "other")
         roads.append(found)
     found.cross = found.cross or (m.relation == "other" and found is not next(iter(streets), found))
     return found
 
 
-def _unplaced(streets: list[GatheredRoad], m: RoadMention) -> GatheredRoad | None:
+def _unplaced(streets: list[MergedRoad], m: RoadMention) -> MergedRoad | None:
     """A road without an axis yet that this mention may place."""
     free = [r for r in streets if r.axis is None and r.cross == (m.relation == "other")]
     alike = [r for r in free if alike_lanes(m.lanes, r.lanes)]
@@ -154,7 +154,7 @@ def _unplaced(streets: list[GatheredRoad], m: RoadMention) -> GatheredRoad | Non
     return open_to[0] if len(open_to) == 1 and (m.definite or m.vehicles) and len(told_once) == 1 else None
 
 
-def _by_story(streets: list[GatheredRoad], m: RoadMention) -> GatheredRoad | None:
+def _by_story(streets: list[MergedRoad], m: RoadMention) -> MergedRoad | None:
     """The road that a mention without an axis means."""
     if not streets:
         return None
@@ -178,7 +178,7 @@ def _by_story(streets: list[GatheredRoad], m: RoadMention) -> GatheredRoad | Non
     return waiting[-1] if waiting and not same_sentence else _last_of_sentence(waiting, m)
 
 
-def _last_of_sentence(waiting: list[GatheredRoad], m: RoadMention) -> GatheredRoad | None:
+def _last_of_sentence(waiting: list[MergedRoad], m: RoadMention) -> MergedRoad | None:
     """ "The north/south roadway was a two-lane two-way roadway": both nouns are one road."""
     mine = [r for r in waiting if m.sentence in r.sentences]
     return mine[-1] if mine else None
@@ -223,7 +223,7 @@ def _clash(first: LaneFacts, second: LaneFacts) -> bool:
 
 
 # ------------------------------------------------------------------ end of the text
-def _settled(roads: list[GatheredRoad], headings: Mapping[str, Compass]) -> list[GatheredRoad]:
+def _settled(roads: list[MergedRoad], headings: Mapping[str, Compass]) -> list[MergedRoad]:
     """Every vehicle's heading has a road, and every road an axis where the story leaves one."""
     streets = _streets(roads)
     special = [r for r in roads if r not in streets]
@@ -235,12 +235,12 @@ def _settled(roads: list[GatheredRoad], headings: Mapping[str, Compass]) -> list
     return streets + special
 
 
-def _place_vehicle(streets: list[GatheredRoad], vehicle: str, axis: Compass) -> None:
+def _place_vehicle(streets: list[MergedRoad], vehicle: str, axis: Compass) -> None:
     road = next((r for r in streets if r.axis == axis), None)
     if road is None:
         own = [r for r in streets if r.axis is None and vehicle in r.vehicles]
         free = own or [r for r in streets if r.axis is None and not r.cross] or [r for r in streets if r.axis is None]
-        road = free[0] if free else GatheredRoad(axis)
+        road = free[0] if free else MergedRoad(axis)
         if not free:
             streets.append(road)
         road.axis = axis
@@ -248,7 +248,7 @@ def _place_vehicle(streets: list[GatheredRoad], vehicle: str, axis: Compass) -> 
         road.vehicles.append(vehicle)
 
 
-def _place_rest(streets: list[GatheredRoad]) -> None:
+def _place_rest(streets: list[MergedRoad]) -> None:
     """Roads still without an axis: the other names of placed roads in their order, or the crossing road."""
     placed = [r for r in streets if r.axis]
     free = [r for r in streets if r.axis is None]
@@ -262,7 +262,7 @@ def _place_rest(streets: list[GatheredRoad]) -> None:
         _place_one(streets, placed, road)
 
 
-def _place_one(streets: list[GatheredRoad], placed: list[GatheredRoad], road: GatheredRoad) -> None:
+def _place_one(streets: list[MergedRoad], placed: list[MergedRoad], road: MergedRoad) -> None:
     lacking = [r for r in placed if not _counted(r.lanes)]
     if not placed:
         road.axis = "N"

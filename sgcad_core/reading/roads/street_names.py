@@ -1,7 +1,8 @@
-"""Which way named streets run: "northbound on Pine", "Route 7 goes east and west", "V2 was on Elm Street".
+"""Axes of named streets: "northbound on Pine", "Route 7 goes east and west", "V2 was on Elm Street".
 
-A street is known by the first words of its name, without "Street" or "Road", or by its number. Of two streets of which
-one's axis is told, the other runs where somebody else drives. Reads resolved sentences. Knows no junction and no lane.
+A street is known by the first words of its name, without "Street" or "Road", or by its number. Of two streets with one
+told axis, the other runs along the heading of the other vehicles. Reads resolved sentences. Knows no junction and no
+lane.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ _REACH = 90
 _KNOWN = (rule("street_names.typed"), rule("street_names.numbered"), rule("street_names.behind_on"))
 
 
-class Named(NamedTuple):
+class StreetMention(NamedTuple):
     """A street's name in a text."""
 
     name: str
@@ -37,7 +38,7 @@ class StreetNames(NamedTuple):
     axes: Mapping[str, Compass]
     pattern: re.Pattern[str] | None
 
-    def in_text(self, text: str) -> Iterator[Named]:
+    def in_text(self, text: str) -> Iterator[StreetMention]:
         """Every name in a text, in order."""
         return _in_text(self.pattern, text)
 
@@ -47,9 +48,9 @@ class StreetNames(NamedTuple):
         return self.axes.get(first.name) if first else None
 
 
-def street_names(told: Iterable[Statement], headings: Mapping[str, Compass]) -> StreetNames:
+def street_names(statements: Iterable[Statement], headings: Mapping[str, Compass]) -> StreetNames:
     """The named streets, each with the axis that most of what is said of it gives."""
-    story = [t.text for t in told if t.role in STORY_ROLES]
+    story = [t.text for t in statements if t.role in STORY_ROLES]
     names = {m["name"].lower() for text in story for known in _KNOWN for m in known.finditer(text)}
     if not names:
         return StreetNames({}, None)
@@ -69,10 +70,10 @@ def street_names(told: Iterable[Statement], headings: Mapping[str, Compass]) -> 
     return StreetNames(axes, pattern)
 
 
-def _in_text(pattern: re.Pattern[str] | None, text: str) -> Iterator[Named]:
+def _in_text(pattern: re.Pattern[str] | None, text: str) -> Iterator[StreetMention]:
     if pattern is not None:
         for m in pattern.finditer(text):
-            yield Named(m["name"].lower(), m.start(), m.end())
+            yield StreetMention(m["name"].lower(), m.start(), m.end())
 
 
 def _most(count: Counter[Compass]) -> Compass | None:
@@ -81,7 +82,7 @@ def _most(count: Counter[Compass]) -> Compass | None:
     return None if rest and rest[0][1] == most else first
 
 
-def _told(text: str, one: Named, stop: int, headings: Mapping[str, Compass]) -> Iterator[tuple[Compass, int]]:
+def _told(text: str, one: StreetMention, stop: int, headings: Mapping[str, Compass]) -> Iterator[tuple[Compass, int]]:
     """What is said of a street where it is named: axes, each with a weight."""
     before = text[: one.start]
     if travel := rule("street_names.along").match(before):

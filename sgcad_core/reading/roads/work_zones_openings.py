@@ -12,14 +12,14 @@ from typing import Literal
 from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 from sgcad_core.records.specs import Compass
 
 Side = Literal["left", "right"]
 InGore = Literal["stands", "strikes", "crosses", "leaves"]
-"""What one does in a gore; who leaves crosses it into the ramp."""
+"""Acts in a gore; "leaves" crosses it into the ramp."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class ClosedLanes:
     count: int
     toward: Compass
     side_stated: bool
-    where: Cue = field(compare=False, repr=False)
+    where: Source = field(compare=False, repr=False)
 
 
 CLOSED_LANES = rule("places.closed_side")
@@ -42,35 +42,35 @@ _AWAY: dict[str, Side] = {"lane_change_left": "right", "lane_change_right": "lef
 """The side of the lane that one leaves by a change of lane."""
 
 
-def closed_lanes(told: Sequence[Statement], vehicles: Sequence[VehicleFacts]) -> ClosedLanes | None:
-    """The closed lanes of a story, None where it tells of none. Which they are follows from who leaves them, where the
-    story does not say it: else the right one."""
+def closed_lanes(statements: Sequence[Statement], vehicles: Sequence[VehicleFacts]) -> ClosedLanes | None:
+    """The closed lanes of a story, None where it tells none. Without a told side it is that of the vehicle that leaves
+    the lane, else the right one."""
     leaves = next((v for v in vehicles if v.maneuver in (*_AWAY, "merge") and v.heading), None)
     lead = leaves or next((v for v in vehicles if v.heading), None)
     if lead is None or lead.heading is None:
         return None
-    for t in _story(told):
+    for t in _story(statements):
         if match := CLOSED_LANES.search(t.text):
             parts = match.groupdict()
             word = next(parts[k] for k in ("side", "ahead", "noun", "blocked", "by") if parts[k]).lower()
             count = NUMBERS.get(number := (parts["count"] or parts["more"] or "1").lower()) or int(number)
             side: Side = "left" if word in _LEFT else "right"
-            return ClosedLanes(side, count, lead.heading, True, Cue(t.number, match[0], CLOSED_LANES.id))
+            return ClosedLanes(side, count, lead.heading, True, Source(t.number, match[0], CLOSED_LANES.id))
         if match := _CLOSURE.search(t.text):
-            return ClosedLanes(_left_by(lead), 1, lead.heading, False, Cue(t.number, match[0], _CLOSURE.id))
+            return ClosedLanes(_left_by(lead), 1, lead.heading, False, Source(t.number, match[0], _CLOSURE.id))
     return None
 
 
-def median_opening(told: Sequence[Statement]) -> Cue | None:
+def median_opening(statements: Sequence[Statement]) -> Source | None:
     """Where a story tells of an opening in the median."""
-    found = ((t, match) for t in _story(told) if (match := MEDIAN_OPENING.search(t.text)))
-    return next((Cue(t.number, match[0], MEDIAN_OPENING.id) for t, match in found), None)
+    found = ((t, match) for t in _story(statements) if (match := MEDIAN_OPENING.search(t.text)))
+    return next((Source(t.number, match[0], MEDIAN_OPENING.id) for t, match in found), None)
 
 
-def in_gores(told: Sequence[Statement]) -> dict[str, InGore]:
-    """Vehicles that a story puts into a gore: who stands there, strikes something there, or crosses it, and whither."""
+def in_gores(statements: Sequence[Statement]) -> dict[str, InGore]:
+    """Vehicles in a gore, by what they do: stand there, strike an object there, cross it, or leave by the ramp."""
     found: dict[str, InGore] = {}
-    for t in _story(told):
+    for t in _story(statements):
         for match in _IN_GORE.finditer(t.text):
             how, who = next((how, who) for how, who in match.groupdict().items() if who)
             away = how == "crosses" and _TO_RAMP.search(t.text[match.end() : match.end() + 60])
@@ -78,18 +78,18 @@ def in_gores(told: Sequence[Statement]) -> dict[str, InGore]:
     return found
 
 
-def names_closure(told: Sequence[Statement]) -> bool:
-    """Whether a story tells of a closed lane at all, though perhaps not for whom."""
-    return any(CLOSED_LANES.search(t.text) or _CLOSURE.search(t.text) for t in _story(told))
+def names_closure(statements: Sequence[Statement]) -> bool:
+    """Whether a story tells a closed lane at all, even without a direction."""
+    return any(CLOSED_LANES.search(t.text) or _CLOSURE.search(t.text) for t in _story(statements))
 
 
-def names_gore(told: Sequence[Statement]) -> bool:
+def names_gore(statements: Sequence[Statement]) -> bool:
     """Whether a story names a gore at all."""
-    return any(_GORE.search(t.text) for t in _story(told))
+    return any(_GORE.search(t.text) for t in _story(statements))
 
 
-def _story(told: Sequence[Statement]) -> list[Statement]:
-    return [t for t in told if t.role in STORY_ROLES]
+def _story(statements: Sequence[Statement]) -> list[Statement]:
+    return [t for t in statements if t.role in STORY_ROLES]
 
 
 def _left_by(v: VehicleFacts) -> Side:

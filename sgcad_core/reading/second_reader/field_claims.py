@@ -13,21 +13,22 @@ from itertools import product
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sgcad_core.kinds import JOINING
-from sgcad_core.reading.inference.inference_state import AREAS, QUARTER_DEG
+from sgcad_core.reading.contacts.contact_records import AREAS
+from sgcad_core.reading.inference.inference_state import QUARTER_DEG
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.text.compass import turned
 from sgcad_core.records.specs import Compass, Leg
 
 if TYPE_CHECKING:
-    from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+    from sgcad_core.reading.contacts.contact_records import ContactFacts
+    from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
     from sgcad_core.reading.reading import Reading
     from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
     from sgcad_core.records.course import CourseTold
 
 _THROUGH = {"through_right": "through", "left_through": "through"}
 """Readers differ in whether they say that one may also turn from a through lane."""
-
 _ONWARD = (
     "straight",
     "slowing",
@@ -37,14 +38,12 @@ _ONWARD = (
     "lane_change_right",
     "crossing_centerline",
 )
-"""Maneuvers of those who go on the way that they head."""
-
+"""Maneuvers that keep to the initial heading."""
 KINDS = (
     "kind", "heading", "maneuver", "exit", "lane", "speed", "contact", "areas", "legs", "lanes", "turns", "median",
     "curve", "limit", "control", "light", "weather", "surface",
 )  # fmt: skip
 """Kinds of fields, for which a combiner has weights."""
-
 UNKNOWN_P = 0.5
 """Of a value whose model gives no probabilities, as servers do not, or has no head that says whether it is told: the
 weights alone then decide."""
@@ -59,8 +58,8 @@ class Claim(NamedTuple):
     p: float = 1.0
     nats: float = 0.0
     also: tuple[Any, ...] = ()
-    """Other values that what is told allows as well: a corner is two sides, who steers left in evasion also leaves his
-    lane to the left, and a lane on either edge is "left" or "right" however many lanes a reader sees."""
+    """Other values that the told one allows as well: a corner is two sides, evasive steering to the left also leaves
+    the lane to the left, and a lane on either edge is "left" or "right" whatever the number of lanes."""
 
 
 Claims = dict[str, Claim]
@@ -119,19 +118,16 @@ def _sides_told(contact: ContactFacts) -> bool:
 
 
 def _corners(contact: ContactFacts) -> tuple[Any, ...]:
-    """Sides by id that told corners allow as well; a side that nobody tells allows no other."""
+    """Sides by id that told corners allow as well; an untold side allows no other."""
     mays = [
         may if len(may) < len(AREAS) else (area,)
-        for may, area in (
-            (contact.striker_may, contact.striker_area),
-            (contact.struck_may, contact.struck_area),
-        )
+        for may, area in ((contact.striker_may, contact.striker_area), (contact.struck_may, contact.struck_area))
     ]
     return tuple(by_id({contact.striker: mine, contact.struck: theirs}) for mine, theirs in product(*mays))
 
 
 def _ways(crash: CrashFacts, drawn: tuple[Leg, ...]) -> Claims:
-    """Lane and way out of everybody: a lane may be told by a word, a way out follows from a turn."""
+    """Lane and way out of every vehicle: a lane may be told by a word, a way out follows from a turn."""
     legs = {leg.bearing: leg for leg in drawn}
     found: Claims = {}
     for v in crash.vehicles:
@@ -220,9 +216,10 @@ def control_of(legs: Iterable[Leg]) -> tuple[tuple[str, str], ...]:
 
 
 def by_id(sides: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
+    """Sides in the order of the ids, as a value that can be compared."""
     return tuple(sorted(sides.items()))
 
 
 def vehicles_of(crash: CrashFacts) -> frozenset[str]:
-    """Everybody whom the rules know by an id."""
+    """Ids of all actors that the rules know."""
     return frozenset([*(v.id for v in crash.vehicles), *(o.id for o in crash.others)])

@@ -18,8 +18,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from sgcad_core.kinds import ACTORS, FOUR_LEG, Maneuver
-from sgcad_core.reading.contacts.near_crash import NearFacts
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts
+from sgcad_core.reading.contacts.near_crash import NearCrashFacts
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.second_reader.seven_question_gist import (
     FIELDS,
     SUBJECT,
@@ -27,7 +28,7 @@ from sgcad_core.reading.second_reader.seven_question_gist import (
     areas,
     meeting,
     partner,
-    rules_say,
+    rule_values,
 )
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.facts import Value as FactValue
@@ -36,7 +37,7 @@ from sgcad_core.records.specs import Area
 
 if TYPE_CHECKING:
     from sgcad_core.reading.reading import Reading
-    from sgcad_core.reading.second_reader.seven_question_gist import RulesSay
+    from sgcad_core.reading.second_reader.seven_question_gist import RuleValues
 
 FILLS = 0.6
 """From which probability on a value stands where the rules have none; of answers to the whole report also where they
@@ -54,8 +55,8 @@ class Decided(NamedTuple):
     changed: bool
 
 
-def decide(opinion: Opinion, say: RulesSay) -> dict[str, Decided]:
-    """The value of every field that somebody has one for."""
+def decide(opinion: Opinion, say: RuleValues) -> dict[str, Decided]:
+    """The value of every field that a reader has one for."""
     found = {}
     for key in FIELDS:
         heard, weights = opinion.heard.get(key), opinion.weights.get(key)
@@ -92,14 +93,14 @@ def model_right(weights: Weights, p: float, told: float, nats: float = 0.0, tell
 
 
 # ------------------------------------------------------------------ taken over
-def fused(reading: Reading, opinion: Opinion) -> Reading:
+def fused_with_gist(reading: Reading, opinion: Opinion) -> Reading:
     """The reading with what the second reader knows better; each change is a fact of the basis "model".
 
     Of numbered reports nothing is changed: the second reader is asked for the subject's first contact alone.
     """
     if not reading.crash.unnumbered:
         return reading
-    decided = decide(opinion, rules_say(reading))
+    decided = decide(opinion, rule_values(reading))
     crash, taken = with_contact(reading.crash, decided), []
     if crash is not reading.crash:
         taken = [_fact(key, decided[key]) for key in _NEEDED]
@@ -129,7 +130,7 @@ def model_fact(field: str, value: FactValue, p: float, told: bool = False, nats:
 def _touched(crash: CrashFacts, one: Decided) -> CrashFacts:
     if not meeting(crash):
         return crash
-    return replace(crash, near_crash=None if one.value else NearFacts())
+    return replace(crash, near_crash=None if one.value else NearCrashFacts())
 
 
 def _subject(crash: CrashFacts, one: Decided) -> CrashFacts:
@@ -179,7 +180,7 @@ _NEEDED = (*_CHANGES, "met")
 
 
 def with_contact(crash: CrashFacts, decided: Mapping[str, Decided]) -> CrashFacts:
-    """A crash whose contact the rules cannot read, with the one that the second reader is sure of; else as it is."""
+    """A crash whose contact the rules cannot read, with the one that the second reader is sure of; else unchanged."""
     if not (crash.gap and crash.gap.unread) or not all(key in decided and decided[key].p >= FILLS for key in _NEEDED):
         return crash
     value = {key: decided[key].value for key in _NEEDED}
@@ -193,12 +194,12 @@ def with_contact(crash: CrashFacts, decided: Mapping[str, Decided]) -> CrashFact
     )
     rest = tuple(v for v in crash.vehicles if v.id not in (SUBJECT, _PARTNER))
     contact = _contact(cast("Area", value["subject_area"]), cast("Area", value["other_area"]))
-    near = None if value["touched"] else NearFacts()
+    near = None if value["touched"] else NearCrashFacts()
     return replace(crash, vehicles=(me, them, *rest), contacts=(contact,), near_crash=near, gap=None)
 
 
 def _contact(mine: Area, theirs: Area) -> ContactFacts:
-    """Who strikes is who touches with its front; of two fronts or none the other one."""
+    """The striker is the one that touches with its front; of two fronts or none the other vehicle."""
     if mine == "front" and theirs != "front":
         return ContactFacts(SUBJECT, _PARTNER, mine, theirs, True)
     return ContactFacts(_PARTNER, SUBJECT, theirs, mine, True)

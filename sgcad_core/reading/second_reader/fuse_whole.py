@@ -15,15 +15,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, T, actor_kind
-from sgcad_core.reading.actors.pedestrians_objects import OtherFacts
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts, VehicleFacts
+from sgcad_core.reading.actors.people_objects import OtherFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.layout.answered_layout import carries, junction_of, legs_added, short_of_told
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.roads.lanes import LaneFacts
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts, uncounted
 from sgcad_core.reading.roads.road_mentions import axis_of
-from sgcad_core.reading.second_reader.answered_claims import model_claims
-from sgcad_core.reading.second_reader.answered_facts import Taken, as_taken, controlled, facts_of
+from sgcad_core.reading.second_reader.answered_values import TakenValue, as_taken, controlled, facts_of, model_claims
 from sgcad_core.reading.second_reader.field_claims import Claim, Claims, kind_of, rules_claim, vehicles_of
 from sgcad_core.reading.second_reader.fuse_gist import FILLS, TURNS, model_right
 from sgcad_core.records.facts import Fact
@@ -41,7 +41,7 @@ _LEARNED = ("none", FOUR_LEG, T, DRIVEWAY, RAMP)
 """Kinds of junctions whose layouts the embedded model has learned; of a ramp without the lane in which one merges."""
 
 
-def whole(reading: Reading, opinion: Opinion) -> Reading:
+def fused_with_answer(reading: Reading, opinion: Opinion) -> Reading:
     """The reading with what the model's answers to the whole report know better; as it is where they are of no use."""
     if opinion.answered is None or reading.crash.unnumbered or reading.crash.near_crash:
         return reading
@@ -72,18 +72,14 @@ def _sayable(heard: Claims, crash: CrashFacts) -> Claims:
 
 
 def _seated(
-    roads: RoadFacts,
-    taken: Mapping[str, Taken],
-    rules: Claims,
-    heard: Claims,
-    weights: Mapping[str, Weights],
-) -> tuple[CrashFacts, dict[str, Taken]]:
+    roads: RoadFacts, taken: Mapping[str, TakenValue], rules: Claims, heard: Claims, weights: Mapping[str, Weights]
+) -> tuple[CrashFacts, dict[str, TakenValue]]:
     """The crash with the model's lanes on roads that its answer lays, and these lanes.
 
     A lane that no text tells is not the rules' there, even where both have the same: theirs followed from the number of
     lanes that they had assumed. Not of vehicles that the model has on another way.
     """
-    found, weight = dict[str, Taken](), weights.get("lane")
+    found, weight = dict[str, TakenValue](), weights.get("lane")
     if weight is None:
         return roads.crash, found
     for v in roads.crash.vehicles:
@@ -106,7 +102,7 @@ def _told(reading: Reading, crash: CrashFacts, roads: RoadFacts, facts: Sequence
     return replace(reading, crash=crash, roads=replace(roads, crash=crash), facts=(*kept, *facts))
 
 
-def decided(rules: Claims, model: Claims, weights: Mapping[str, Weights], takes: float) -> dict[str, Taken]:
+def decided(rules: Claims, model: Claims, weights: Mapping[str, Weights], takes: float) -> dict[str, TakenValue]:
     """The model's values that are taken: not those that both have, and none of a kind without weights."""
     found = {}
     for key, said in model.items():
@@ -119,7 +115,7 @@ def decided(rules: Claims, model: Claims, weights: Mapping[str, Weights], takes:
     return found
 
 
-def fitting(taken: Mapping[str, Taken], rules: Claims, model: Claims) -> dict[str, Taken]:
+def fitting(taken: Mapping[str, TakenValue], rules: Claims, model: Claims) -> dict[str, TakenValue]:
     """Without lanes and ways out of vehicles that both readers have on other ways: they are of the model's way."""
     headings = {of: taken.get(f"heading.{of}", rules.get(f"heading.{of}")) for of in {*map(_whose, taken)}}
     elsewhere = {
@@ -154,7 +150,7 @@ def agree(key: str, rule: Claim, said: Claim) -> bool:
 
 # ------------------------------------------------------------------ where the rules can read no crash
 def _filled(reading: Reading, said: Answered, heard: Claims) -> Reading:
-    """The reading with the model's whole crash, if it is sure of who met whom with which sides and where both drove."""
+    """The reading with the model's whole crash, if the model is sure of the contact, its sides and both headings."""
     if not said.behavior.contacts or reading.roads.junction.kind not in _LEARNED:
         return reading
     first = said.behavior.contacts[0]
@@ -176,7 +172,7 @@ def _filled(reading: Reading, said: Answered, heard: Claims) -> Reading:
     return _told(reading, crash, reading.roads, facts)
 
 
-def _with_values(v: VehicleFacts, values: Mapping[str, Claim] | Mapping[str, Taken]) -> VehicleFacts:
+def _with_values(v: VehicleFacts, values: Mapping[str, Claim] | Mapping[str, TakenValue]) -> VehicleFacts:
     """A vehicle with the values that there are of it."""
     for name, change in _VEHICLE.items():
         if (one := values.get(f"{name}.{v.id}")) is not None:
@@ -184,8 +180,8 @@ def _with_values(v: VehicleFacts, values: Mapping[str, Claim] | Mapping[str, Tak
     return v
 
 
-# ------------------------------------------------------------------ who moved how, who met whom
-def _crash(crash: CrashFacts, taken: Mapping[str, Taken]) -> tuple[CrashFacts, set[str]]:
+# ------------------------------------------------------------------ motions and contacts
+def _crash(crash: CrashFacts, taken: Mapping[str, TakenValue]) -> tuple[CrashFacts, set[str]]:
     """The crash with the values that fit into it, and their fields."""
     used = {key for v in crash.vehicles for name in _VEHICLE if (key := f"{name}.{v.id}") in taken}
     oriented = crash.oriented or any(kind_of(key) == "heading" for key in used)
@@ -198,7 +194,7 @@ def _crash(crash: CrashFacts, taken: Mapping[str, Taken]) -> tuple[CrashFacts, s
     return (crash, used) if met is None else (replace(crash, contacts=met[0]), used | met[1])
 
 
-def _met(crash: CrashFacts, taken: Mapping[str, Taken]) -> tuple[tuple[ContactFacts, ...], set[str]] | None:
+def _met(crash: CrashFacts, taken: Mapping[str, TakenValue]) -> tuple[tuple[ContactFacts, ...], set[str]] | None:
     """The contacts with another first one, or with other sides of it."""
     if not crash.contacts or crash.gap:
         return None
@@ -241,7 +237,7 @@ _VEHICLE: Mapping[str, Callable[[VehicleFacts, Any], VehicleFacts]] = {
 
 
 # ------------------------------------------------------------------ roads
-def _roads(facts: RoadFacts, taken: Mapping[str, Taken], said: Answered) -> tuple[RoadFacts, set[str]]:
+def _roads(facts: RoadFacts, taken: Mapping[str, TakenValue], said: Answered) -> tuple[RoadFacts, set[str]]:
     """The roads with the values that fit, and their fields."""
     if facts.junction.kind not in _LEARNED or facts.closed or facts.opening or facts.crash.gore:
         return facts, set()

@@ -118,7 +118,7 @@ def probability(figures: Sequence[float], of: Sequence[float]) -> float:
 
 # ------------------------------------------------------------------ asked
 def opinion(narrative: str, learned: Learned | None = None) -> Opinion | None:
-    """Of a narrative; None of numbered reports and of texts of another sort."""
+    """The opinion on a narrative; None for numbered reports and texts of another sort."""
     account = account_of(narrative)
     learned = learned or load()
     said = words(account)

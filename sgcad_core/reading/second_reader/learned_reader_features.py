@@ -1,25 +1,31 @@
-"""What a learned reader sees of a report: the words around whoever met, and what the rules made of them.
+"""Features of the learned reader: the words around the contact's pair, and the values of the rules.
 
-Words are those of the sentences with everybody named by number, so that the subject, whom it met and anybody else are
-three words, and every number is one. Nothing is weighed here; knows no weights.
+Words are those of the sentences with every actor named by number, so that the subject, its partner and any other actor
+are three words, and every number is one. Nothing is weighed here; knows no weights.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from sgcad_core.reading import reading as stages
-from sgcad_core.reading.actors.references import numbers_somebody
-from sgcad_core.reading.inference.inference_state import Draft
+from sgcad_core.reading.actors.references import has_actor_numbers
+from sgcad_core.reading.inference.inference_state import CrashTold
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
 from sgcad_core.reading.reading import Reading
-from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, SUBJECT, RulesSay, meeting, partner, rules_say
-from sgcad_core.reading.text.driving_study_style import tells_study
-from sgcad_core.reading.text.traced_text import Traced
+from sgcad_core.reading.second_reader.seven_question_gist import (
+    FIELDS,
+    SUBJECT,
+    RuleValues,
+    meeting,
+    partner,
+    rule_values,
+)
+from sgcad_core.reading.text.report_styles import tells_study
+from sgcad_core.reading.text.traced_text import TracedText
 
-_TOKEN = rule("wordings.token")
 _PAIRS = (
     ("subject", "other"), ("subject_area", "other_area"), ("subject", "subject_area"), ("other", "other_area"),
     ("subject", "other_area"), ("other", "subject_area"), ("met", "other"),
@@ -32,34 +38,34 @@ _BLOWS = 3
 
 
 class Account(NamedTuple):
-    """A report as its reading's stages left it, and whom the subject met by the rules."""
+    """A report as its reading's stages left it, and the subject's partner by the rules."""
 
     reading: Reading
     statements: tuple[Statement, ...]
     segments: tuple[Segment, ...]
-    draft: Draft
-    say: RulesSay
+    crash_told: CrashTold
+    say: RuleValues
     partner: str | None
 
 
 def account_of(narrative: str) -> Account:
-    """Of a narrative, read by the rules."""
-    even = stages.normalise(Traced.of(narrative))
+    """Reads a narrative by the rules and keeps the results of the stages."""
+    even = stages.normalise(TracedText.of(narrative))
     found = stages.sentences(even)
-    named = stages.mentions(found, not numbers_somebody(even.text))
+    named = stages.mentions(found, not has_actor_numbers(even.text))
     cut = stages.clauses(named)
     seen = stages.events(found, named, cut, of_study=tells_study(even.text))
     reading = stages.infer(narrative, found, named, seen)
     contact = meeting(reading.crash)
     met = partner(contact) if contact else None
-    return Account(reading, named.statements, cut, seen.draft, rules_say(reading), met)
+    return Account(reading, named.statements, cut, seen.crash_told, rule_values(reading), met)
 
 
 # ------------------------------------------------------------------ words
 def words(account: Account) -> set[str]:
-    """One to three words in a row, of the whole text, before, in and behind the contact's sentence, of the stretches
-    about the subject and about whom it met, and of the last such stretch up to the contact."""
-    hit = _contact_at(account.draft)
+    """One to three words in a row: of the whole text; before, in and behind the contact's sentence; of the stretches
+    about the subject and about its partner; of the last such stretch up to the contact."""
+    hit = _contact_at(account.crash_told)
     found: set[str] = set()
     for told in account.statements:
         if told.role != "formal":
@@ -76,12 +82,14 @@ def words(account: Account) -> set[str]:
 
 
 def runs(found: Iterable[str]) -> set[str]:
-    """Of words those of two and three in a row: by how many of them are known one tells how foreign a text is."""
+    """Features of two and three words in a row; the share of known ones tells how foreign a text is."""
     return {one for one in found if one.startswith("U:") and "_" in one}
 
 
-def _contact_at(draft: Draft) -> int | None:
-    mine = [b.number for b in draft.blows if SUBJECT in (b.actor, b.other)] or [b.number for b in draft.blows]
+def _contact_at(crash: CrashTold) -> int | None:
+    mine = [b.number for b in crash.contact_mentions if SUBJECT in (b.actor, b.other)] or [
+        b.number for b in crash.contact_mentions
+    ]
     return mine[0] if mine else None
 
 
@@ -92,11 +100,11 @@ def _place(number: int, hit: int | None) -> str:
 
 
 def _tokens(text: str, met: str | None) -> list[str]:
-    return [_role(m.group(), met) for m in _TOKEN.finditer(text.lower().replace("'s", ""))]
+    return [_role(m.group(), met) for m in rule("wordings.token").finditer(text.lower().replace("'s", ""))]
 
 
 def _role(word: str, met: str | None) -> str:
-    """A word, or which of the three somebody is; numbers are one word."""
+    """A word, or its actor's part (subject, partner, third); numbers are one word."""
     if word.isdigit():
         return "NUM"
     if not (word[0] == "v" and word[1:].isdigit()):
@@ -114,14 +122,14 @@ def _grams(said: Sequence[str], most: int) -> Iterator[str]:
 
 # ------------------------------------------------------------------ what the rules say
 def readings(account: Account) -> set[str]:
-    """Values of the rules, alone and in pairs; how each was come by; deeds and contacts as they were read."""
-    found = {*_values(account.say), *_facts(account), *_deeds(account), *_blows(account.draft)}
+    """Values of the rules, alone and in pairs, with their rules; maneuver cues and contacts as they were read."""
+    found = {*_values(account.say), *_facts(account), *_cue_features(account), *_contact_features(account.crash_told)}
     crash = account.reading.crash
     found |= {f"vehicles={min(len(crash.vehicles), 4)}", f"near={crash.near_crash is not None}"}
     return found | {f"junction={account.reading.roads.junction.kind}"}
 
 
-def _values(say: RulesSay) -> Iterator[str]:
+def _values(say: RuleValues) -> Iterator[str]:
     for key in FIELDS:
         yield f"{key}={say.values.get(key)}"
         yield f"{key}={say.values.get(key)}&{key in say.told}"
@@ -141,22 +149,22 @@ def _facts(account: Account) -> Iterator[str]:
             yield f"{names[name]}.{what}={fact.value}:{fact.rule}:{fact.confidence}"
 
 
-def _deeds(account: Account) -> Iterator[str]:
+def _cue_features(account: Account) -> Iterator[str]:
     for tag, name in (("S", SUBJECT), ("O", account.partner)):
-        motion = account.draft.motions.get(name or "")
-        deeds = [deed.kind for deed in motion.deeds] if motion else []
-        yield f"{tag}deeds={min(len(deeds), 4)}"
-        yield from (f"{tag}deed={kind}" for kind in deeds)
-        yield from (f"{tag}last={kind}" for kind in deeds[-1:])
+        motion = account.crash_told.motions.get(name or "")
+        cues = [cue.kind for cue in motion.cues] if motion else []
+        yield f"{tag}deeds={min(len(cues), 4)}"
+        yield from (f"{tag}deed={kind}" for kind in cues)
+        yield from (f"{tag}last={kind}" for kind in cues[-1:])
 
 
-def _blows(draft: Draft) -> Iterator[str]:
-    mine = [b for b in draft.blows if SUBJECT in (b.actor, b.other)]
-    yield f"blows={min(len(draft.blows), 3)}/{min(len(mine), 3)}"
-    for blow in mine[:_BLOWS]:
-        acts = blow.actor == SUBJECT
-        sides: tuple[Any, Any] = (blow.actor_area, blow.other_area) if acts else (blow.other_area, blow.actor_area)
-        yield f"blow acts={acts} passive={blow.passive} mutual={blow.mutual} noun={blow.noun}"
+def _contact_features(crash: CrashTold) -> Iterator[str]:
+    mine = [b for b in crash.contact_mentions if SUBJECT in (b.actor, b.other)]
+    yield f"blows={min(len(crash.contact_mentions), 3)}/{min(len(mine), 3)}"
+    for mention in mine[:_BLOWS]:
+        acts = mention.actor == SUBJECT
+        sides = mention.areas_of(SUBJECT)
+        yield f"blow acts={acts} passive={mention.passive} mutual={mention.mutual} noun={mention.noun}"
         yield f"blow mine={sides[0]}"
         yield f"blow theirs={sides[1]}"
-        yield f"blow word={blow.words}"
+        yield f"blow word={mention.words}"

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from pydantic import Field
 
 from sgcad_core.kinds import ACTORS, Maneuver, kind_of_letter
-from sgcad_core.reading.crash_facts import ContactFacts, CrashFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts
+from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.records.answer_schema import Spec
 from sgcad_core.records.second_reader import Value
 from sgcad_core.records.specs import ActorKind, Area
@@ -69,7 +70,7 @@ def shown_alike(one: Value, other: Value) -> bool:
     return alike(one, other) or any({one, other} <= some for some in _SHOWN)
 
 
-class RulesSay(NamedTuple):
+class RuleValues(NamedTuple):
     """The rules' value of every field that they have one for, and the fields that the text tells outright."""
 
     values: Mapping[str, Value]
@@ -83,7 +84,7 @@ def meeting(crash: CrashFacts) -> ContactFacts | None:
 
 
 def partner(contact: ContactFacts) -> str:
-    """Whom the subject met."""
+    """The actor that the subject met."""
     return contact.struck if contact.striker == SUBJECT else contact.striker
 
 
@@ -93,8 +94,8 @@ def areas(contact: ContactFacts) -> tuple[Area, Area]:
     return (mine, theirs) if contact.striker == SUBJECT else (theirs, mine)
 
 
-def rules_say(reading: Reading) -> RulesSay:
-    """Of a reading. Without a contact of the subject nothing is said of the other one."""
+def rule_values(reading: Reading) -> RuleValues:
+    """The values of a reading by the rules; without a contact of the subject none for its partner."""
     crash, junction = reading.crash, reading.roads.junction
     values: dict[str, Value] = {"junction": junction.kind not in ("none", "parking_lot")}
     told = {"junction"} if junction.stated else set()
@@ -105,7 +106,7 @@ def rules_say(reading: Reading) -> RulesSay:
         more, sure = _of_contact(crash, contact)
         values |= more
         told |= sure
-    return RulesSay(values, frozenset(told))
+    return RuleValues(values, frozenset(told))
 
 
 def _of_contact(crash: CrashFacts, contact: ContactFacts) -> tuple[dict[str, Value], set[str]]:

@@ -13,15 +13,6 @@ Zone = str
 """An area of a vehicle ("left") or a corner ("front/left": the end, then the flank)."""
 
 
-_POSSESSIVE = rule("zones.possessive")
-_FLANKPARTS = rule("zones.flankparts")
-_CORNER = rule("zones.corner")
-_CORNERED = rule("zones.cornered")
-
-
-_ITS_AREA = rule("zones.its_area")
-
-
 def area_of(words: str) -> Zone | None:
     """What an area phrase means: "left door" -> "left", "left front" -> "front/left"; None if it names no side.
 
@@ -32,33 +23,32 @@ def area_of(words: str) -> Zone | None:
     flank: Area | None = next((side.yields["area"] for side in of_role("flank") if side.search(text)), None)
     front = bool(rule("zones.front").search(text))
     back = bool(rule("zones.back").search(text))
-    if flank and (front or back) and (not _FLANKPARTS.search(text) or _CORNERED.search(text)):
+    if flank and (front or back) and (not rule("zones.flankparts").search(text) or rule("zones.cornered").search(text)):
         return f"front/{flank}" if front else f"back/{flank}"
-    if _CORNER.search(text) and (front or back) and not flank:
+    if rule("zones.corner").search(text) and (front or back) and not flank:
         return "front/left/right" if front else "back/left/right"
     return flank or ("front" if front else "back" if back else None)
 
 
 # ------------------------------------------------------------------ one form
-def plain(told: Statement, who: Roster) -> str:
+def plain(statement: Statement, roster: Roster) -> str:
     """The sentence with possessives turned round: "V1's left side" -> "the left side of V1"."""
-    text = rule("zones.plural_number").sub(r"V\1's", told.text)
+    text = rule("zones.plural_number").sub(r"V\1's", statement.text)
     text = rule("zones.trailer_of_number").sub(r"\1", text)
     text = rule("zones.of_trailer").sub(r"of \1", text)
     text = rule("zones.opened_door").sub(r"\g<told>the \g<door> of \g<v>", text)
-    text = _POSSESSIVE.sub(lambda m: f"the {m['area']} of {m['v']}", text)
+    text = rule("zones.possessive").sub(lambda m: f"the {m['area']} of {m['v']}", text)
     text = rule("zones.bare_possessive").sub(r"the \g<area> of \g<v>", text)
-    text = rule("zones.area_of_the_vehicle").sub(_of_subject(told), text)
-    return _ITS_AREA.sub(lambda m: _its(m, told, text, who), text)
+    if statement.subject:
+        text = rule("zones.area_of_the_vehicle").sub(rf"\g<area> of {statement.subject}", text)
+    return rule("zones.its_area").sub(lambda m: _its(m, statement, text, roster), text)
 
 
-def _of_subject(told: Statement) -> str:
-    return rf"\g<area> of {told.subject}" if told.subject else r"\g<0>"
-
-
-def _its(match: re.Match[str], told: Statement, text: str, who: Roster) -> str:
-    starts = [subjects for at, _, subjects in subject_starts(told._replace(text=text), who) if at < match.start()]
-    owner = starts[-1][0] if starts and starts[-1] else told.subject
+def _its(match: re.Match[str], statement: Statement, text: str, roster: Roster) -> str:
+    starts = [
+        subjects for at, _, subjects in subject_starts(statement._replace(text=text), roster) if at < match.start()
+    ]
+    owner = starts[-1][0] if starts and starts[-1] else statement.subject
     return f"the {match['area']} of {owner}" if owner else match.group()
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from sgcad_core.reading.language import of_role, rule
-from sgcad_core.reading.motion.motion_record import Cue
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.normalise import Sentence
 from sgcad_core.records.specs import Light, Surface, Weather
 
@@ -17,16 +17,13 @@ class Conditions(NamedTuple):
     light: Light | None = None
     weather: Weather | None = None
     surface: Surface | None = None
-    sources: Mapping[str, Cue] = {}
+    sources: Mapping[str, Source] = {}
     """Where each was read."""
 
 
-_NEGATED = rule("conditions.negated")
 _LESS = ("interview", "injury", "police", "restraint", "towing", "health")
 """Roles of sentences that are asked where the crash's own tell nothing; they must tell two of the three."""
 _ROLES = ("opening", "road", "conditions", "approach", "impact", "other", "rest", "avoidance")
-
-
 _KINDS = ("light", "weather", "surface")
 
 
@@ -40,17 +37,17 @@ def conditions(sentences: Iterable[Sentence]) -> Conditions:
     return Conditions(**values, sources={role: told[1] for role, told in found.items() if told})
 
 
-def _told(role: str, said: list[Sentence]) -> tuple[Any, Cue] | None:
+def _told(role: str, said: list[Sentence]) -> tuple[Any, Source] | None:
     signal = rule("conditions.traffic_light")
     lit = [s for s in said if not signal.search(s.text) or rule("conditions.dark").search(s.text)]
     return _first(role, lit if role == "light" else said)
 
 
-def _first(role: str, said: list[Sentence]) -> tuple[Any, Cue] | None:
+def _first(role: str, said: list[Sentence]) -> tuple[Any, Source] | None:
     """What the first rule of a role states that any sentence meets without a negation before it, and where."""
     for rule_ in of_role(role):
         for sentence in said:
             for m in rule_.finditer(sentence.text):
-                if not _NEGATED.search(sentence.text[: m.start()]):
-                    return rule_.yields[role], Cue(sentence.number, m[0], rule_.id)
+                if not rule("conditions.negated").search(sentence.text[: m.start()]):
+                    return rule_.yields[role], Source(sentence.number, m[0], rule_.id)
     return None

@@ -9,17 +9,13 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from sgcad_core.reading.actors.cyclists import number_cyclists
-from sgcad_core.reading.actors.parked import number_parked
-from sgcad_core.reading.actors.references import number_actors
+from sgcad_core.reading.actors.references import number_actors, number_cyclists, number_parked
 from sgcad_core.reading.language import of_role, rule, values
-from sgcad_core.reading.text.driving_study_style import named_in_full
-from sgcad_core.reading.text.first_person import in_third_person
+from sgcad_core.reading.text.report_styles import in_third_person, named_in_full
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, Role, role_of
-from sgcad_core.reading.text.traced_text import Traced, joined
+from sgcad_core.reading.text.traced_text import TracedText, joined
 
 __all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalised", "normalize", "sentences", "split_sentences"]
-
 NUMBERS: dict[str, int] = values("number_word")
 MOST_READ = 16_000
 """Characters of a report that are read, four times the longest known: the one limit that keeps any text bearable."""
@@ -52,16 +48,8 @@ _CHARACTERS = str.maketrans({
     "\u00c2": " ", "\u00c3": " ",  # what is left where a file was read in another encoding twice
 })  # fmt: skip
 
-_TYPO = rule("text.typo")
-
 
 # ------------------------------------------------------------------ mentions, units, directions
-
-_LETTERED = rule("text.lettered")
-_SPOKEN = rule("text.spoken_speed")
-_VEHICLE_WORD = rule("text.vehicle_word")
-_VEHICLE_CASE = rule("text.vehicle_case")
-_COUNTED_LANE = rule("text.counted_lane")
 
 
 def normalize(text: str) -> str:
@@ -69,21 +57,21 @@ def normalize(text: str) -> str:
 
     Paragraphs stay apart ("\\n\\n"); everything else is single-spaced. normalize(normalize(t)) == normalize(t).
     """
-    return normalised(Traced.of(text)).text
+    return normalised(TracedText.of(text)).text
 
 
-def normalised(text: Traced) -> Traced:
+def normalised(text: TracedText) -> TracedText:
     """`normalize` of a text whose characters know their places; only its first `MOST_READ` characters are read."""
     return joined([p for p in map(_paragraph, _blocks(text.cut(0, MOST_READ))) if p.text], "\n\n")
 
 
-def _blocks(text: Traced) -> list[Traced]:
+def _blocks(text: TracedText) -> list[TracedText]:
     """Paragraphs: a line break counts where a sentence ended before it or the line is empty."""
     plain = text.translate(_CHARACTERS)
     return plain.sub(rule("text.space_at_end"), "\n").split(rule("text.paragraph"))
 
 
-def _paragraph(block: Traced) -> Traced:
+def _paragraph(block: TracedText) -> TracedText:
     once = _spell(block)
     for _ in range(4):
         again = _spell(once)
@@ -93,20 +81,20 @@ def _paragraph(block: Traced) -> Traced:
     return once
 
 
-def _spell(text: Traced) -> Traced:
-    text = _spaces(text).sub(_TYPO, _mend_typo)
+def _spell(text: TracedText) -> TracedText:
+    text = _spaces(text).sub(rule("text.typo"), _mend_typo)
     for spelling in of_role("spelling"):
         text = text.sub(spelling, spelling.yields["to"])
-    text = text.sub(_SPOKEN, lambda m: str(values("spoken_speed")[m.group().lower()]))
+    text = text.sub(rule("text.spoken_speed"), lambda m: str(values("spoken_speed")[m.group().lower()]))
     text = text.sub(rule("text.first_vehicle"), "V1")
-    text = text.sub(_LETTERED, lambda m: f"V{ord(m.group(1)) - ord('A') + 1}")
+    text = text.sub(rule("text.lettered"), lambda m: f"V{ord(m.group(1)) - ord('A') + 1}")
     text = text.sub(rule("text.lettered_driver"), lambda m: f"the driver of V{ord(m.group(1)) - ord('A') + 1}")
-    text = text.sub(_VEHICLE_WORD, lambda m: f"V{NUMBERS[m.group(1).lower()]}")
-    text = text.sub(_VEHICLE_CASE, r"V\1").sub(_COUNTED_LANE, _mend_lanes)
+    text = text.sub(rule("text.vehicle_word"), lambda m: f"V{NUMBERS[m.group(1).lower()]}")
+    text = text.sub(rule("text.vehicle_case"), r"V\1").sub(rule("text.counted_lane"), _mend_lanes)
     return _spaces(text)
 
 
-def _spaces(text: Traced) -> Traced:
+def _spaces(text: TracedText) -> TracedText:
     """Single spaces, one full stop at a time, a space behind it and behind commas."""
     text = text.sub(rule("common.space"), " ").sub(rule("text.full_stops"), ".")
     text = text.sub(rule("text.space_before_mark"), r"\1").sub(rule("text.glued_sentence"), ". ")
@@ -127,17 +115,15 @@ def _mend_lanes(match: re.Match[str]) -> str:
 
 
 # ------------------------------------------------------------------ sentences
-_ABBREVIATION = rule("text.abbreviation")
-_END = rule("text.end")
 
 
 def sentences(text: str) -> tuple[Sentence, ...]:
     """The sentences of a report as it was written, in order, with roles; vehicles without numbers get some."""
-    return split_sentences(normalised(Traced.of(text)))
+    return split_sentences(normalised(TracedText.of(text)))
 
 
-def split_sentences(text: Traced) -> tuple[Sentence, ...]:
-    """The sentences of a normalized text; those who have no number get one."""
+def split_sentences(text: TracedText) -> tuple[Sentence, ...]:
+    """The sentences of a normalized text; actors without a number get one."""
     found: list[Sentence] = []
     numbered = number_parked(number_cyclists(number_actors(named_in_full(in_third_person(text)))))
     blocks = [block for block in numbered.split_at("\n\n") if block.text]
@@ -147,13 +133,13 @@ def split_sentences(text: Traced) -> tuple[Sentence, ...]:
     return tuple(found)
 
 
-def _split(block: Traced) -> list[Traced]:
-    pieces: list[Traced] = []
-    for part in block.split(_END):
+def _split(block: TracedText) -> list[TracedText]:
+    pieces: list[TracedText] = []
+    for part in block.split(rule("text.end")):
         last = pieces[-1].text[-_TAIL:] if pieces else ""
         ended = last.lower().endswith((" dr.", " st.")) or rule("text.road_closed").search(last)
         titled = rule("text.title").search(last)
-        joins = pieces and _ABBREVIATION.search(last) and (titled or not ended)
+        joins = pieces and rule("text.abbreviation").search(last) and (titled or not ended)
         if pieces and joins:
             pieces[-1] = joined([pieces[-1], part], " ")
         else:
@@ -161,7 +147,7 @@ def _split(block: Traced) -> list[Traced]:
     return [cut for piece in pieces for raw in _cut(piece) if (cut := raw.strip()).text]
 
 
-def _cut(sentence: Traced) -> list[Traced]:
+def _cut(sentence: TracedText) -> list[TracedText]:
     """Pieces of bearable length: no report has such a sentence, and patterns take quadratic time on it."""
     if len(sentence.text) <= LONGEST:
         return [sentence]

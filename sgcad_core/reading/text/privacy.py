@@ -1,8 +1,7 @@
-"""Takes what says who somebody was, not how the crash went, out of a narrative.
+"""Takes personal data out of a narrative; the course of the crash stays.
 
 Sex, age, names, licence, health and injury data, numbers of reports, badges and plates are of no use to a scenario and
-never reach a prompt.
-Motion is never touched: a sentence goes only if it tells of persons alone. Knows no crash facts.
+never reach a prompt. Motion is never touched: a sentence goes only if it tells of persons alone. Knows no crash facts.
 """
 
 from __future__ import annotations
@@ -10,47 +9,43 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from sgcad_core.reading.language import of_role, rule
-from sgcad_core.reading.text.traced_text import Traced, joined
+from sgcad_core.reading.text.traced_text import TracedText, joined
 
-_AGE = rule("privacy.age")
-_SEX = rule("privacy.sex")
-_NAME = rule("privacy.name")
-_IDENTIFIER = rule("privacy.identifier")
 _PERSON_ONLY = rule("privacy.person_only")
 _CRASH = rule("privacy.crash")
 _PLURAL = {"was": "were", "is": "are", "has": "have", "does": "do", "wasn't": "weren't"}
-_AGREEMENT = rule("privacy.agreement")
-_CONNECTOR = rule("privacy.connector")
-_CLAUSE = rule("privacy.clause")
 _MENTION = rule("privacy.mention")
 _PERSON = rule("privacy.person")
-_UNHURT = rule("privacy.unhurt")
-_SENTENCE_END = rule("privacy.sentence_end")
 
 
 def redact(text: str) -> str:
     """The narrative without persons: sentences about people alone dropped, ages, sexes and names replaced."""
-    return redacted(Traced.of(text)).text
+    return redacted(TracedText.of(text)).text
 
 
-def redacted(text: Traced) -> Traced:
+def redacted(text: TracedText) -> TracedText:
     """`redact` of a text whose characters know their places."""
-    out = joined(list(_parts_without_persons(text.split(_SENTENCE_END))))
-    out = out.sub(_AGE, lambda m: f"{m.group('the') or 'a '}person ").sub(_NAME, "a person")
-    out = out.sub(_IDENTIFIER, lambda m: f"{m['what']} (number left out)")
-    out = out.sub(_SEX, lambda m: _person(m.group(0), m.group(1))).sub(rule("privacy.person_before_role"), r"\1")
+    out = joined(list(_parts_without_persons(text.split(rule("privacy.sentence_end")))))
+    out = out.sub(rule("privacy.age"), lambda m: f"{m.group('the') or 'a '}person ").sub(
+        rule("privacy.name"), "a person"
+    )
+    out = out.sub(rule("privacy.identifier"), lambda m: f"{m['what']} (number left out)")
+    out = out.sub(rule("privacy.sex"), lambda m: _person(m.group(0), m.group(1))).sub(
+        rule("privacy.person_before_role"), r"\1"
+    )
     for pronoun in of_role("personal_pronoun"):
         out = out.sub(pronoun, pronoun.yields["to"])
-    out = out.sub(_AGREEMENT, lambda m: m.group(1) + _PLURAL[m.group(2)])
+    out = out.sub(rule("privacy.agreement"), lambda m: m.group(1) + _PLURAL[m.group(2)])
     out = out.sub(rule("privacy.sentence_begins"), r"\1A person").sub(rule("privacy.spaces"), " ")
     return out.sub(rule("privacy.space_before_mark"), r"\1").strip()
 
 
-def _parts_without_persons(sentences: Iterable[Traced]) -> Iterator[Traced]:
-    """Sentences without persons; where one goes that named the vehicle, the next one's "he" or "she" names it.
+def _parts_without_persons(sentences: Iterable[TracedText]) -> Iterator[TracedText]:
+    """Sentences without persons; after a dropped sentence that named the vehicle, "he" or "she" in the next one names
+    it.
 
-    Of one about the driver whom a study watched it stays that he drives: all that follows is about him, be it in the
-    same sentence.
+    A dropped sentence about the driver whom a study watched leaves "is driving": all that follows is about that driver,
+    even in the same sentence.
     """
     named: str | None = None
     for sentence in sentences:
@@ -70,17 +65,17 @@ def _parts_without_persons(sentences: Iterable[Traced]) -> Iterator[Traced]:
         yield kept
 
 
-def _without_persons(sentence: Traced) -> Traced:
+def _without_persons(sentence: TracedText) -> TracedText:
     """A sentence without the clauses that tell of persons alone; its end mark and line break stay."""
     if not _PERSON_ONLY.search(sentence.text):
         return sentence
     ends = rule("privacy.body_and_end").fullmatch(sentence.text).start(2)  # type: ignore[union-attr]
     body, end = sentence.cut(0, ends), sentence.cut(ends, len(sentence.text))
-    clauses = body.sub(_UNHURT, "").split(_CLAUSE)
+    clauses = body.sub(rule("privacy.unhurt"), "").split(rule("privacy.clause"))
     kept = [clause for clause in clauses if not _tells_of_persons_alone(clause.text)]
     if not kept or (kept[0] is not clauses[0] and not _CRASH.search("".join(k.text for k in kept))):
         kept = []  # what is left has lost its subject and tells of no motion
-    text = joined(kept).strip(" ,;").sub(_CONNECTOR, "")
+    text = joined(kept).strip(" ,;").sub(rule("privacy.connector"), "")
     space = body.cut(0, rule("privacy.leading_space").match(body.text).end())  # type: ignore[union-attr]
     return joined([space, text, end]) if text.text else end.strip(".!? ")
 

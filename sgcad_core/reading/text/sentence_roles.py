@@ -14,47 +14,27 @@ Role = Literal[
     "opening", "road", "conditions", "approach", "avoidance", "impact", "rest", "towing", "restraint", "injury",
     "interview", "health", "codes", "factors", "police", "formal", "other",
 ]  # fmt: skip
-
 CRASH_ROLES: frozenset[Role] = frozenset({"opening", "road", "conditions", "approach", "avoidance", "impact", "rest"})
 """Roles that tell the crash itself; the others are noise, at best a second witness."""
 STORY_ROLES: frozenset[Role] = CRASH_ROLES | {"other"}
 """Roles in which places and roads are told: those, and sentences without a word that gives them a role."""
-
-
 HIT = rule("roles.hit")
-_VEHICLE_BEFORE_HIT = rule("roles.vehicle_before_hit")
-_COUNTERFACTUAL = rule("roles.counterfactual")
-
-_OPENING = rule("roles.opening")
-_REST = rule("roles.rest")
-_AVOID = rule("roles.avoid")
-_MOTION = rule("roles.motion")
-_ACTOR = rule("roles.actor")
-_CONDITIONS = rule("roles.conditions")
 _ROAD = rule("roles.road")
-
-
-_DRIVEN = rule("roles.driven")
-
-
-_ACTED = rule("roles.acted")
-
-
 _BESIDE: tuple[Role, ...] = ("factors", "police", "towing", "health", "injury", "restraint")
-"""Noise in whose sentences a crash may be told too."""
+"""Noise roles whose sentences may tell a crash, too."""
 
 
 def role_of(text: str) -> Role:
     """The role of one normalized sentence. A sentence of two roles gets the one that misleads least."""
     text = rule("roles.attribution").sub("", text)
-    if _OPENING.search(text):
+    if rule("roles.opening").search(text):
         return "opening"
     noise = _noise(text)
-    if noise in ("restraint", "injury", "health") and _DRIVEN.search(text):
+    if noise in ("restraint", "injury", "health") and rule("roles.driven").search(text):
         return "impact" if is_impact(text) else "approach"
     if noise in _BESIDE and (rule("roles.struck_plainly").search(text) or rule("roles.came_from").search(text)):
         return "impact" if is_impact(text) else "approach"
-    if noise == "interview" and _ACTED.search(text):
+    if noise == "interview" and rule("roles.acted").search(text):
         return "approach"
     if noise in ("restraint", "health") and is_impact(text):
         return "impact"
@@ -62,15 +42,15 @@ def role_of(text: str) -> Role:
         return noise
     if is_impact(text):
         return "impact"
-    if _REST.search(text):
+    if rule("roles.rest").search(text):
         return "rest"
     return _scene(text)
 
 
 def is_impact(text: str) -> bool:
     """Whether a sentence tells that vehicles touched (not that they nearly did)."""
-    bare = _COUNTERFACTUAL.sub(" ", text)
-    return bool(_VEHICLE_BEFORE_HIT.search(bare))
+    bare = rule("roles.counterfactual").sub(" ", text)
+    return bool(rule("roles.vehicle_before_hit").search(bare))
 
 
 def _noise(text: str) -> Role | None:
@@ -80,11 +60,13 @@ def _noise(text: str) -> Role | None:
 def _scene(text: str) -> Role:
     """Motion, road or conditions: whatever stays when the noise is gone."""
     named = rule("roles.named").search(text)
-    if named and _AVOID.search(text) and not rule("roles.traveled").search(text):
+    if named and rule("roles.avoid").search(text) and not rule("roles.traveled").search(text):
         return "avoidance"
-    if _MOTION.search(text) and (named or (_ACTOR.search(text) and not _ROAD.match(text.split(" ", 1)[-1]))):
+    if rule("roles.motion").search(text) and (
+        named or (rule("roles.actor").search(text) and not _ROAD.match(text.split(" ", 1)[-1]))
+    ):
         return "approach"
-    conditions, road = len(_CONDITIONS.findall(text)), len(_ROAD.findall(text))
+    conditions, road = len(rule("roles.conditions").findall(text)), len(_ROAD.findall(text))
     if conditions and conditions >= road:
         return "conditions"
     if road:

@@ -1,4 +1,4 @@
-"""How fast somebody drove, as told: "at 45 mph", "doing 35", "15 mph for V1". Knows no road and infers nothing.
+"""Told speeds of vehicles: "at 45 mph", "doing 35", "15 mph for V1". Knows no road and infers nothing.
 
 A number is a speed if its unit stands behind it, or a word of driving before it. In a sentence that speaks of a limit
 only the latter count.
@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import Motion
+from sgcad_core.reading.motion.motion_record import VehicleMotion
 
 FASTEST_MPH = 120.0
 """The most that is read as a vehicle's speed and driven; the fastest of known reports has 100."""
@@ -30,20 +30,15 @@ class Speed(NamedTuple):
     rule: str
 
 
-_SPEED = rule("surroundings.speed")
-_KMPH = rule("surroundings.kmph")
 _BARE = rule("speeds.bare")
-_LIMIT = rule("surroundings.limit")
-_DRIVEN = rule("speeds.driven")
-_VEHICLE = rule("common.vehicle")
 
 
 def speeds(text: str) -> Iterator[Speed]:
     """Speeds that are no limits, those in mph first, then those in km/h, then numbers without a unit."""
-    of_limit = bool(_LIMIT.search(text))
-    for pattern, factor in ((_SPEED, 1.0), (_KMPH, MILES), (_BARE, 1.0)):
+    of_limit = bool(rule("surroundings.limit").search(text))
+    for pattern, factor in ((rule("surroundings.speed"), 1.0), (rule("surroundings.kmph"), MILES), (_BARE, 1.0)):
         for m in pattern.finditer(text):
-            if not of_limit or pattern is _BARE or _DRIVEN.search(text[: m.start()]):
+            if not of_limit or pattern is _BARE or rule("speeds.driven").search(text[: m.start()]):
                 yield Speed(_mph(m, factor), m.start("a"), m.end(), m.group(), pattern.id)
 
 
@@ -52,46 +47,47 @@ def _mph(m: re.Match[str], factor: float) -> int:
     return round(min(FASTEST_MPH, (float(m.group("a")) + float(high)) / 2 * factor))
 
 
-def read_speed(motion: Motion, text: str, weight: int) -> None:
+def read_speed(motion: VehicleMotion, text: str, weight: int) -> None:
     """The first speed of a segment."""
     if found := next(speeds(text), None):
-        motion.heard(motion.speeds_mph, weight, found.mph, found.words, found.rule)
+        motion.add_value(motion.speeds_mph, weight, found.mph, found.words, found.rule)
 
 
-def read_speeds_beside(motions: Mapping[str, Motion], told: Sequence[Statement]) -> None:
-    """Speeds of those whose own segments tell none: of a sentence that names nobody else, or right behind the name."""
+def read_speeds_beside(motions: Mapping[str, VehicleMotion], statements: Sequence[Statement]) -> None:
+    """Speeds of vehicles whose own segments tell none: from a sentence that names no other vehicle, or right behind the
+    name."""
     lacking = {v for v, motion in motions.items() if not motion.speeds_mph}
-    for t in told:
+    for t in statements:
         for vehicle, speed in _owned(t) if lacking else ():
             if vehicle in lacking:
                 motion = motions[vehicle]
                 motion.at = t.number
-                motion.heard(motion.speeds_mph, 1, speed.mph, speed.words, speed.rule)
+                motion.add_value(motion.speeds_mph, 1, speed.mph, speed.words, speed.rule)
 
 
-def _owned(told: Statement) -> Iterator[tuple[str, Speed]]:
+def _owned(statement: Statement) -> Iterator[tuple[str, Speed]]:
     """Speeds of a sentence with the vehicle that each is of, where that is plain."""
-    named = list(_VEHICLE.finditer(told.text))
-    for speed in speeds(told.text):
-        if found := rule("speeds.for_vehicle").match(told.text, speed.end):
+    named = list(rule("common.vehicle").finditer(statement.text))
+    for speed in speeds(statement.text):
+        if found := rule("speeds.for_vehicle").match(statement.text, speed.end):
             yield found["vehicle"], speed
             continue
-        if rule("speeds.other").search(told.text):
+        if rule("speeds.other").search(statement.text):
             continue
-        if named and rule("speeds.somebody").search(told.text[: named[0].start()]):
+        if named and rule("speeds.somebody").search(statement.text[: named[0].start()]):
             continue
-        if len({m[0] for m in named}) == 1 or _opens(told.text, named, speed):
+        if len({m[0] for m in named}) == 1 or _opens(statement.text, named, speed):
             yield named[0][0], speed
             continue
-        if not named and told.subject and rule("speeds.pronoun").search(told.text):
-            yield told.subject, speed
+        if not named and statement.subject and rule("speeds.pronoun").search(statement.text):
+            yield statement.subject, speed
             continue
         before = [m for m in named if m.end() <= speed.start]
-        if before and rule("speeds.between").fullmatch(told.text, before[-1].end(), speed.start):
+        if before and rule("speeds.between").fullmatch(statement.text, before[-1].end(), speed.start):
             yield before[-1][0], speed
 
 
 def _opens(text: str, named: Sequence[re.Match[str]], speed: Speed) -> bool:
-    """Whether a speed stands before the first vehicle, whose it is: "At 40 mph a northbound V1"."""
+    """Whether a speed stands before the first vehicle and belongs to it: "At 40 mph a northbound V1"."""
     before = text[: named[0].start()] if named else ""
     return speed.end <= len(before) and rule("speeds.opening").fullmatch(before) is not None

@@ -1,7 +1,7 @@
 """Text that remembers, character by character, where it was written: edits keep the place in the original.
 
-`Traced` has the few operations that normalising needs (sub, split, strip, slice, join) with the results of `re` and
-`str`. Places are offsets in the text that `Traced.of` was given. Knows no crash and no language.
+`TracedText` has the few operations that normalising needs (sub, split, strip, slice, join) with the results of `re` and
+`str`. Places are offsets in the text that `TracedText.of` was given. Knows no crash and no language.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Pattern = re.Pattern[str] | Rule
 Fill = Callable[["re.Match[str]"], str]
 
 
-class Traced(NamedTuple):
+class TracedText(NamedTuple):
     """Text; character i was written at [starts[i], ends[i]) (a character that was put in: where it was put)."""
 
     text: str
@@ -26,26 +26,26 @@ class Traced(NamedTuple):
     ends: Sequence[int]
 
     @staticmethod
-    def of(text: str) -> Traced:
+    def of(text: str) -> TracedText:
         """A text as it was written."""
-        return Traced(text, range(len(text)), range(1, len(text) + 1))
+        return TracedText(text, range(len(text)), range(1, len(text) + 1))
 
-    def cut(self, start: int, end: int) -> Traced:
+    def cut(self, start: int, end: int) -> TracedText:
         """The characters [start, end)."""
-        return Traced(self.text[start:end], self.starts[start:end], self.ends[start:end])
+        return TracedText(self.text[start:end], self.starts[start:end], self.ends[start:end])
 
     @property
     def span(self) -> tuple[int, int]:
         """Where the first character begins and the last one ends; (0, 0) of nothing."""
         return (self.starts[0], self.ends[-1]) if self.text else (0, 0)
 
-    def sub(self, pattern: Pattern, to: str | Fill, count: int = 0) -> Traced:
+    def sub(self, pattern: Pattern, to: str | Fill, count: int = 0) -> TracedText:
         """`pattern.sub(to, text, count)`; of a match only what really changes loses its own place."""
         fill = _filling(to) if isinstance(to, str) else to
         edits = [(m.start(), m.end(), new) for m in _matches(pattern, self.text, count) if (new := fill(m)) != m[0]]
         return self._edited(edits) if edits else self
 
-    def _edited(self, edits: Iterable[tuple[int, int, str]]) -> Traced:
+    def _edited(self, edits: Iterable[tuple[int, int, str]]) -> TracedText:
         text, starts, ends, at = [], list[int](), list[int](), 0
         for begin, end, new in edits:
             begin, end, new = _trimmed(self.text, begin, end, new)
@@ -58,7 +58,7 @@ class Traced(NamedTuple):
             at = end
         starts += self.starts[at:]
         ends += self.ends[at:]
-        return Traced("".join([*text, self.text[at:]]), starts, ends)
+        return TracedText("".join([*text, self.text[at:]]), starts, ends)
 
     def _between(self, begin: int, end: int) -> tuple[int, int]:
         """Where the characters [begin, end) stand; of none, the point between their neighbours, or what these share."""
@@ -70,7 +70,7 @@ class Traced(NamedTuple):
         before = self.ends[begin - 1]
         return min(before, self.starts[begin] if begin < len(self.text) else before), before
 
-    def split(self, pattern: Pattern) -> list[Traced]:
+    def split(self, pattern: Pattern) -> list[TracedText]:
         """`pattern.split(text)` of a pattern without groups."""
         found, at = [], 0
         for match in pattern.finditer(self.text):
@@ -78,7 +78,7 @@ class Traced(NamedTuple):
             at = match.end()
         return [*found, self.cut(at, len(self.text))]
 
-    def split_at(self, mark: str) -> list[Traced]:
+    def split_at(self, mark: str) -> list[TracedText]:
         """`text.split(mark)`."""
         found, at = [], 0
         for piece in self.text.split(mark):
@@ -86,18 +86,18 @@ class Traced(NamedTuple):
             at += len(piece) + len(mark)
         return found
 
-    def translate(self, table: Mapping[int, str]) -> Traced:
+    def translate(self, table: Mapping[int, str]) -> TracedText:
         """`text.translate(table)` of a table of characters' numbers."""
         edits = [(i, i + 1, table[ord(c)]) for i, c in enumerate(self.text) if ord(c) in table]
         return self._edited(edits) if edits else self
 
-    def strip(self, characters: str | None = None) -> Traced:
+    def strip(self, characters: str | None = None) -> TracedText:
         """`text.strip(characters)`."""
         begin = len(self.text) - len(self.text.lstrip(characters))
         return self.cut(begin, max(begin, len(self.text.rstrip(characters))))
 
 
-def joined(parts: Sequence[Traced], glue: str = "") -> Traced:
+def joined(parts: Sequence[TracedText], glue: str = "") -> TracedText:
     """`glue.join(parts)`; the glue stands between its neighbours."""
     text, starts, ends = [], list[int](), list[int]()
     for number, part in enumerate(parts):
@@ -108,7 +108,7 @@ def joined(parts: Sequence[Traced], glue: str = "") -> Traced:
         text.append(part.text)
         starts += part.starts
         ends += part.ends
-    return Traced("".join(text), starts, ends)
+    return TracedText("".join(text), starts, ends)
 
 
 Runs = tuple[tuple[int, int, int], ...]
@@ -116,7 +116,7 @@ Runs = tuple[tuple[int, int, int], ...]
 the same."""
 
 
-def runs(text: Traced) -> Runs:
+def runs(text: TracedText) -> Runs:
     """Where a text stands in the one it was made of, in few words; () if it is the very same so far as it goes."""
     found: list[tuple[int, int, int]] = []
     for here, (start, end) in enumerate(zip(text.starts, text.ends, strict=True)):
@@ -134,16 +134,16 @@ def _goes_on(run: tuple[int, int, int], here: int, start: int, end: int) -> bool
     return (verbatim and start == last and end == start + 1) or (start, end) == (there, last)
 
 
-def placed(text: str, where: Runs) -> Traced:
+def placed(text: str, where: Runs) -> TracedText:
     """The text whose `runs` are known."""
     if not where:
-        return Traced.of(text)
+        return TracedText.of(text)
     starts, ends = list[int](), list[int]()
     for (here, there, last), (then, _, _) in zip(where, (*where[1:], (len(text), 0, 0)), strict=True):
         same = then - here == last - there
         starts += range(there, last) if same else [there] * (then - here)
         ends += range(there + 1, last + 1) if same else [last] * (then - here)
-    return Traced(text, starts, ends)
+    return TracedText(text, starts, ends)
 
 
 SPACES = 2
@@ -165,7 +165,7 @@ def redactions(where: Runs) -> list[dict[str, int]]:
     return found
 
 
-def shown(text: Traced, start: int, end: int) -> tuple[int, int]:
+def shown(text: TracedText, start: int, end: int) -> tuple[int, int]:
     """Where in an edited text that stands which was written at [start, end); empty if nothing of it is left."""
     first, last = bisect_right(text.ends, start), bisect_left(text.starts, end)
     return first, max(first, last)

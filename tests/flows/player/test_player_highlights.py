@@ -9,7 +9,7 @@ from flows.player.player_highlights import facts_by_thing, road_along, road_axes
 from flows.player.road_shapes import Strip
 from sgcad_core.case.records import CrashReport
 from sgcad_core.reading.text.privacy import redacted
-from sgcad_core.reading.text.traced_text import Traced, runs
+from sgcad_core.reading.text.traced_text import TracedText, runs
 
 WRITTEN = "The driver of V1, a 45-year-old male, was northbound. V1 struck V2."
 
@@ -28,7 +28,7 @@ def test_a_fact_is_about_one_thing(field, thing):
 
 
 def test_sentences_are_found_in_the_redacted_text_that_is_shown():
-    bare = redacted(Traced.of(WRITTEN))
+    bare = redacted(TracedText.of(WRITTEN))
     report = CrashReport(case="c", narrative=bare.text, places=runs(bare))
     found = sentences_of(report, rows(report))
     assert [report.narrative[s["start"] : s["end"]] for s in found][-1] == "V1 struck V2."

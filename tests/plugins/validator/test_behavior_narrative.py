@@ -11,7 +11,7 @@ import pytest
 from plugins.validator.behavior_narrative import BehaviorNarrative
 from sgcad_core.case.records import CrashReport, Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
-from sgcad_core.reading.reading import crash_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.records.specs import Access, Actor, BehaviorSpec, Leg, RoadLayout, RoadSpec
 from sgcad_core.roads.layout import road_spec
 
@@ -20,7 +20,7 @@ TEXT = (
     "V1 was traveling north. V2 was traveling south and turned left at the intersection. "
     "The front of V1 struck the right side of V2."
 )
-GOOD = behavior_of_facts(crash_facts(TEXT), SPEC)
+GOOD = behavior_of_facts(read(TEXT).crash, SPEC)
 
 
 def _found(behavior: BehaviorSpec | None, text: str = TEXT, **fields: Any) -> list[Finding]:
@@ -63,7 +63,7 @@ def test_a_wrong_heading_names_the_ways_that_fit() -> None:
                                                         ("S", "forward", False)])  # fmt: skip
 def test_who_backs_may_face_along_its_way_or_go_along_it_tail_first(road: str, direction: str, fine: bool) -> None:
     text = "The AV was going north. A van facing east reversed, and the rear of the van hit the right side of the AV."
-    written = behavior_of_facts(crash_facts(text), SPEC)
+    written = behavior_of_facts(read(text).crash, SPEC)
     van = written.actors[1].model_copy(update={"road": road, "direction": direction, "exit_road": None})
     found = _found(written.model_copy(update={"actors": (written.actors[0], van)}), text)
     assert (not any("first travels" in f.what for f in found)) == fine
@@ -77,7 +77,7 @@ def test_another_maneuver_than_the_told_turn_is_asked_again(maneuver: str) -> No
 
 def test_slowing_instead_of_stopped_is_no_contradiction() -> None:
     text = "V1 was northbound. V2 was stopped ahead of V1. V1 struck the rear of V2."
-    good = behavior_of_facts(crash_facts(text), SPEC)
+    good = behavior_of_facts(read(text).crash, SPEC)
     second = good.actors[1].model_copy(update={"maneuver": "slowing"})
     assert _found(good.model_copy(update={"actors": (good.actors[0], second)}), text) == []
 
@@ -92,16 +92,16 @@ def test_sides_that_the_text_names_are_asked_again_and_the_striker_may_stand_in_
 
 def test_a_corner_may_be_read_either_way() -> None:
     text = "V1 was northbound. V2 was eastbound. The front of V1 struck the left front of V2."
-    good = behavior_of_facts(crash_facts(text), SPEC)
+    good = behavior_of_facts(read(text).crash, SPEC)
     other = good.contacts[0].model_copy(update={"striker_area": "front", "struck_area": "front"})
     assert [f.severity for f in _found(good.model_copy(update={"contacts": (other,)}), text)] == ["doubt"]
     elsewhere = good.model_copy(update={"contacts": (other,), "actors": (_turning(good.actors[0]), good.actors[1])})
     assert "doubt" not in [f.severity for f in _found(elsewhere, text)]
     unheaded = text.replace("V2 was eastbound", "V2 was there")
-    read = behavior_of_facts(crash_facts(unheaded), SPEC)
-    swapped = {"front": "left", "left": "front"}[read.contacts[0].struck_area]
-    changed = read.contacts[0].model_copy(update={"struck_area": swapped})
-    assert [f.severity for f in _found(read.model_copy(update={"contacts": (changed,)}), unheaded)] == ["note"]
+    behavior = behavior_of_facts(read(unheaded).crash, SPEC)
+    swapped = {"front": "left", "left": "front"}[behavior.contacts[0].struck_area]
+    changed = behavior.contacts[0].model_copy(update={"struck_area": swapped})
+    assert [f.severity for f in _found(behavior.model_copy(update={"contacts": (changed,)}), unheaded)] == ["note"]
 
 
 def test_a_contact_that_is_not_declared_is_asked_for() -> None:
@@ -258,7 +258,7 @@ def test_a_corner_may_be_either_of_its_sides_and_no_other(side: str, severity: s
     ("the left rear of V2", {"left", "back"}), ("the rear of V2", {"back"}), ("V2", {"front", "left", "right", "back"}),
 ])  # fmt: skip
 def test_facts_keep_which_sides_the_words_allow(said: str, may: set[str]) -> None:
-    (contact,) = crash_facts(TEXT.replace("the right side of V2", said)).contacts
+    (contact,) = read(TEXT.replace("the right side of V2", said)).crash.contacts
     assert set(contact.struck_may if contact.struck == "V2" else contact.striker_may) == may
 
 
@@ -277,7 +277,7 @@ def test_of_a_rear_end_crash_both_start_the_same_way(text: str, moved: int, road
     def found(behavior: BehaviorSpec) -> list[Finding]:
         return [f for f in _found(behavior, text) if "head different ways" in f.what]
 
-    right = behavior_of_facts(crash_facts(BEHIND), SPEC)
+    right = behavior_of_facts(read(BEHIND).crash, SPEC)
     assert found(right) == []
     actors = list(right.actors)
     actors[moved] = actors[moved].model_copy(update={"road": "E"})
@@ -289,5 +289,5 @@ def test_of_a_rear_end_crash_both_start_the_same_way(text: str, moved: int, road
 
 def test_one_that_turned_before_it_was_struck_from_behind_may_head_elsewhere() -> None:
     text = "V1 was northbound and turned left. V2 was westbound. The front of V2 struck the rear of V1."
-    behavior = behavior_of_facts(crash_facts(text), SPEC)
+    behavior = behavior_of_facts(read(text).crash, SPEC)
     assert not [f for f in _found(behavior, text) if "head different ways" in f.what]

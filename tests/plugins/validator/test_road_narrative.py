@@ -9,7 +9,7 @@ from sgcad_core.asking.schema_holds import narrowed
 from sgcad_core.case.records import Context, CrashReport, Diagram, Evidence, Finding, RoadNetwork
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.records.specs import Leg, RoadLayout
 from sgcad_core.roads.lane_total_readings import allowed_totals
 from sgcad_core.roads.layout import road_spec
@@ -291,7 +291,7 @@ def test_a_leg_that_only_the_struck_side_tells_is_a_doubt(bearings: str, found: 
     ("a road with two lanes in each direction", 4, 5),
 ])  # fmt: skip
 def test_allowed_totals_hold_what_the_words_may_mean(said: str, low: int, high: int) -> None:
-    road = road_facts(f"V1 was traveling north on {said}.").streets[0]
+    road = read(f"V1 was traveling north on {said}.").roads.streets[0]
     assert (min(allowed_totals(road)), max(allowed_totals(road))) == (low, high)
     assert max(allowed_totals(road, pictured=False)) == high - 1
 
@@ -299,19 +299,19 @@ def test_allowed_totals_hold_what_the_words_may_mean(said: str, low: int, high: 
 def test_turn_lanes_of_both_approaches_lie_one_behind_the_other() -> None:
     lanes = ", ".join(f"one {way} left turn lane, one {way} lane" for way in ("northbound", "southbound"))
     said = f"a four-lane road ({lanes})"
-    assert allowed_totals(road_facts(f"V1 was traveling north on {said}.").streets[0], pictured=False) == {3, 4}
+    assert allowed_totals(read(f"V1 was traveling north on {said}.").roads.streets[0], pictured=False) == {3, 4}
 
 
 def test_turn_lanes_among_lanes_told_way_by_way_are_not_counted_twice() -> None:
     said = "a five-lane road (two southbound lanes, two northbound lanes, one northbound left turn lane)"
-    road = road_facts(f"V1 was traveling north on {said}.").streets[0]
+    road = read(f"V1 was traveling north on {said}.").roads.streets[0]
     assert allowed_totals(road, pictured=False) == {5}
     assert max(allowed_totals(road)) == 6
 
 
 @pytest.mark.parametrize("said", ["a divided four-lane highway", "a two-lane, one-way street", "a road"])
 def test_a_road_whose_drawn_total_is_open_allows_anything(said: str) -> None:
-    assert allowed_totals(road_facts(f"V1 was traveling north on {said}.").streets[0]) == set()
+    assert allowed_totals(read(f"V1 was traveling north on {said}.").roads.streets[0]) == set()
 
 
 def held(found: list[Finding], *legs: Leg) -> list[Leg]:
@@ -328,7 +328,7 @@ def test_lanes_that_a_finding_holds_are_those_of_the_text() -> None:
     (hold,) = [hold for finding in found for hold in finding.holds]
     assert set(hold.values) == {"N", "S"}
     allowed = {n + out for choice in hold.either for n in choice["lanes_in"] for out in choice["lanes_out"]}
-    assert allowed == allowed_totals(road_facts(CROSSING).streets[0], pictured=False)
+    assert allowed == allowed_totals(read(CROSSING).roads.streets[0], pictured=False)
     assert repairs(CROSSING, *held(found, *legs)) == []
 
 

@@ -17,7 +17,7 @@ from sgcad_core.account.unread_text import unread_items
 from sgcad_core.account.words import named, phrase, shown
 from sgcad_core.config import load
 from sgcad_core.reading.text.normalise import split_sentences
-from sgcad_core.reading.text.traced_text import Traced
+from sgcad_core.reading.text.traced_text import TracedText
 from sgcad_core.records.facts import Fact
 from sgcad_core.settings import ROOT
 
@@ -55,7 +55,7 @@ def of(items, field):
 @pytest.mark.parametrize(("said", "lacks"), [("hovercraft", True), ("golf cart", False), ("vehicle", False)])
 def test_a_vehicle_of_no_known_kind_lacks_its_kind(made, said, lacks):
     text = f"V1, a {said}, was traveling north."
-    sentences = split_sentences(Traced.of(text))
+    sentences = split_sentences(TracedText.of(text))
     drawn = fact("vehicles.V1.kind", "car", basis="default" if said != "golf cart" else "text", start=None, end=None)
     reading = replace(telling(made, drawn).reading, sentences=sentences)
     found = of(unread_items(replace(made, reading=reading)), "text.kind")
@@ -207,7 +207,7 @@ def test_a_note_on_two_vehicles_points_at_their_contact():
 
 def test_whom_the_text_describes_and_the_scenario_lacks_is_told_by_its_words(made):
     text = "The car (V1) was northbound. An old tractor (V7) stood by. A man on foot (V8) looked on."
-    reading = replace(made.reading, sentences=tuple(split_sentences(Traced.of(text))), called={"V8": "V1"})
+    reading = replace(made.reading, sentences=tuple(split_sentences(TracedText.of(text))), called={"V8": "V1"})
     found = [item.text for item in unread_items(replace(made, reading=reading)) if item.field == "text.vehicle"]
     assert found == ["'old tractor' is named"]
     assert reading.text_of(reading.sentences[-1]) == "A man on foot (V1) looked on."

@@ -7,7 +7,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.plan_score import doubt, least_doubted
 from sgcad_core.planner import plan
 from sgcad_core.reading.crash_facts import CrashFacts
-from sgcad_core.reading.reading import crash_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.records.specs import BehaviorSpec
 from tests.sgcad_core.planner.aftermath.test_rest_fit import crossing
 from tests.sgcad_core.planner.crash_scenes import network
@@ -24,26 +24,26 @@ def scenario(oddity: float) -> Scenario:
 
 def other_side(facts: CrashFacts) -> BehaviorSpec:
     """A behavior that meets in ordinary driving for the corner's other side only."""
-    if facts.contacts[0].struck_area == crash_facts(TEXT).contacts[0].struck_area:
+    if facts.contacts[0].struck_area == read(TEXT).crash.contacts[0].struck_area:
         raise InvalidOutput("this reading cannot be placed")
     return crossing()
 
 
 def other_open_side(facts: CrashFacts) -> BehaviorSpec:
     """The same for sides that nobody tells."""
-    if facts.contacts[0].struck_area == crash_facts(OPEN).contacts[0].struck_area:
+    if facts.contacts[0].struck_area == read(OPEN).crash.contacts[0].struck_area:
         raise InvalidOutput("this reading cannot be placed")
     return crossing()
 
 
 def test_no_doubt_tries_nothing() -> None:
-    facts = crash_facts(TEXT)
+    facts = read(TEXT).crash
     least = least_doubted(facts, other_side, GRAPH, scenario(0.1))
     assert (least.facts, least.words, least.notes()) == (facts, "", [])
 
 
 def test_a_told_corner_gives_way_only_where_nothing_comes_about() -> None:
-    facts = crash_facts(TEXT)
+    facts = read(TEXT).crash
     least = least_doubted(facts, other_side, GRAPH, scenario(1.5))
     assert least.facts == facts
     assert "instead of" in least.notes()[0]
@@ -60,7 +60,7 @@ OPEN = "V1 was eastbound. V2 was southbound. V1 struck V2."
 
 
 def test_the_reading_that_leaves_no_doubt_is_kept() -> None:
-    facts = crash_facts(OPEN)
+    facts = read(OPEN).crash
     least = least_doubted(facts, other_open_side, GRAPH, scenario(1.5))
     assert least.facts.contacts[0].struck_area != facts.contacts[0].struck_area
     assert least.notes()[0].endswith(f"{least.words}: 0.0; kept: {least.words}")
@@ -70,7 +70,7 @@ def test_the_first_reading_stands_where_no_other_can_be_placed() -> None:
     def nowhere(facts: CrashFacts) -> BehaviorSpec:
         raise InvalidOutput("no road")
 
-    facts = crash_facts(TEXT)
+    facts = read(TEXT).crash
     least = least_doubted(facts, nowhere, GRAPH, scenario(1.5))
     assert least.facts == facts
     assert least.notes() == ["doubt 1.5 on the first reading; tried no other; kept: the first reading"]
@@ -89,7 +89,7 @@ UNNUMBERED = "The AV was eastbound. A van was southbound. The front of the AV st
 
 
 def unnumbered_other_side(facts: CrashFacts) -> BehaviorSpec:
-    if facts.contacts[0].struck_area == crash_facts(UNNUMBERED).contacts[0].struck_area:
+    if facts.contacts[0].struck_area == read(UNNUMBERED).crash.contacts[0].struck_area:
         raise InvalidOutput("this reading cannot be placed")
     return crossing()
 
@@ -103,7 +103,7 @@ def awry(by_rad: float) -> Scenario:
 
 
 def test_of_a_report_without_numbers_a_corner_gives_way_where_its_first_side_hides_what_is_told() -> None:
-    facts = crash_facts(UNNUMBERED)
+    facts = read(UNNUMBERED).crash
     assert least_doubted(facts, unnumbered_other_side, GRAPH, awry(0.0)).facts == facts
     least = least_doubted(facts, unnumbered_other_side, GRAPH, awry(4.0))
     assert least.facts.contacts[0].struck_area != facts.contacts[0].struck_area
@@ -111,7 +111,7 @@ def test_of_a_report_without_numbers_a_corner_gives_way_where_its_first_side_hid
 
 def test_where_nothing_else_meets_somebody_who_slows_drives_on() -> None:
     text = "V1 was eastbound and slowed for a bus. V2 was southbound. The front of V1 struck the right side of V2."
-    facts = crash_facts(text)
+    facts = read(text).crash
 
     def only_onward(facts: CrashFacts) -> BehaviorSpec:
         if facts.vehicles[0].maneuver == "slowing":

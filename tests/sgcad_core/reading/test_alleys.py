@@ -6,7 +6,7 @@ from lxml import etree
 from flows.player.road_shapes import drawing_of
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 from tests.sgcad_core.reading.place_cases import assert_passes_what_roads_pass, written
 
 COMES_OUT = (
@@ -32,14 +32,14 @@ TURNED_IN = (
     [(COMES_OUT, {"S"}, 3), (BACKS_OUT, {"N"}, 3), (WITHIN, {"N", "S"}, 2), (TURNED_IN, {"E", "W"}, 2)],
 )
 def test_an_alley_is_the_stem_or_the_road_of_the_crash(text: str, alleys: set[str], legs: int) -> None:
-    layout = layout_of_facts(road_facts(text))
+    layout = layout_of_facts(read(text).roads)
     assert len(layout.legs) == legs
     assert {leg.bearing for leg in layout.legs if leg.alley} == alleys
 
 
 def test_who_leaves_a_lot_and_who_drives_on_a_street_use_no_alley() -> None:
     text = "V1 was traveling east on a street near an alley. V2 came out of a driveway. The front of V1 struck V2."
-    facts = road_facts(text)
+    facts = read(text).roads
     assert facts.junction.kind == "driveway"
     assert not any(leg.alley for leg in layout_of_facts(facts).legs)
 

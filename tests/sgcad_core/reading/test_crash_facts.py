@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.reading.crash_facts import CrashFacts
-from sgcad_core.reading.reading import crash_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.reading.text.privacy import redact
 
 Statement = dict[str, tuple[str | None, str | None]]
@@ -509,7 +509,7 @@ def _sides(facts: CrashFacts) -> dict[str, str]:
 
 @pytest.mark.parametrize(("text", "vehicles", "sides"), REPORTS)
 def test_a_report_is_read_as_a_person_reads_it(text: str, vehicles: Statement, sides: dict[str, str] | None) -> None:
-    facts = crash_facts(text)
+    facts = read(text).crash
     for name, (heading, maneuver) in vehicles.items():
         found = facts.vehicle(name)
         assert found is not None
@@ -527,13 +527,13 @@ def _swapped(text: str) -> str:
 
 
 def _two_told(text: str) -> bool:
-    facts = crash_facts(text)
+    facts = read(text).crash
     return len(facts.vehicles) == 2 and all(v.heading_stated for v in facts.vehicles) and bool(_NUMBERED.search(text))
 
 
 @pytest.mark.parametrize("text", [t for t, _, _ in REPORTS if _two_told(t)])
 def test_exchanging_the_numbers_exchanges_the_facts(text: str) -> None:
-    facts, mirror = crash_facts(text), crash_facts(_swapped(text))
+    facts, mirror = read(text).crash, read(_swapped(text)).crash
     for name, other in (("V1", "V2"), ("V2", "V1")):
         one, two = facts.vehicle(name), mirror.vehicle(other)
         assert one is not None
@@ -549,7 +549,7 @@ def test_exchanging_the_numbers_exchanges_the_facts(text: str) -> None:
 @pytest.mark.parametrize("text", [t for t, _, _ in REPORTS if re.search(r"\bV1\b", t) and "(V1" not in t][:12])
 def test_every_spelling_of_a_mention_gives_the_same_facts(text: str, spelling: str) -> None:
     rewritten = re.sub(r"\bV(\d)\b", lambda m: spelling.format(m.group(1)), text)
-    assert crash_facts(rewritten) == crash_facts(text)
+    assert read(rewritten).crash == read(text).crash
 
 
 _SCRAPS = """V1 V2 V3 Vehicle #1 vehicle two the front rear left right side of struck was by with its turning
@@ -562,7 +562,7 @@ _WORDS = st.sampled_from([*_SCRAPS.split(), "\n\n"])
 @given(st.lists(_WORDS, max_size=60).map(" ".join))
 @settings(max_examples=250, deadline=None)
 def test_any_scrap_of_report_is_read_without_a_fault(text: str) -> None:
-    facts = crash_facts(text)
+    facts = read(text).crash
     names = {v.id for v in facts.vehicles} | {o.id for o in facts.others}
     assert all({c.striker, c.struck} <= names and c.striker != c.struck for c in facts.contacts)
 
@@ -570,73 +570,73 @@ def test_any_scrap_of_report_is_read_without_a_fault(text: str) -> None:
 @given(st.text(max_size=200))
 @settings(max_examples=150, deadline=None)
 def test_any_text_is_read_without_a_fault(text: str) -> None:
-    assert crash_facts(text) is not None
+    assert read(text).crash is not None
 
 
 def test_a_text_without_vehicles_gives_no_facts() -> None:
-    facts = crash_facts("The meeting was moved to Thursday.")
+    facts = read("The meeting was moved to Thursday.").crash
     assert facts.vehicles == ()
     assert facts.contacts == ()
 
 
 def test_conditions_are_read_and_negations_are_not() -> None:
-    facts = crash_facts(
+    facts = read(
         "V1 was eastbound. It was dark but the road was lighted, there was no rain and the road was dry."
-    )
+    ).crash
     assert (facts.light, facts.weather, facts.surface) == ("dark_lit", None, "dry")
 
 
 def test_an_interview_does_not_overrule_the_impact_paragraph() -> None:
-    facts = crash_facts(
+    facts = read(
         "V1 was northbound. V2 was westbound. The front of V1 struck the left side of V2.\n\n"
         "The driver of V2 stated that the front of V2 struck the right side of V1."
-    )
+    ).crash
     assert _sides(facts) == {"V1": "front", "V2": "left"}
 
 
 def test_a_near_miss_and_a_stranger_are_no_contact() -> None:
-    facts = crash_facts(
+    facts = read(
         "V1 was eastbound and braked to avoid striking a non-contact vehicle. V2, eastbound behind V1, struck the "
         "rear of V1."
-    )
+    ).crash
     assert [(c.striker, c.struck) for c in facts.contacts] == [("V2", "V1")]
     assert len(facts.vehicles) == 2
 
 
 def test_headings_that_are_not_told_follow_from_the_sides_that_touched() -> None:
-    facts = crash_facts("V1 was traveling north. V2 failed to stop. The front of V2 struck the left side of V1.")
+    facts = read("V1 was traveling north. V2 failed to stop. The front of V2 struck the left side of V1.").crash
     found = facts.vehicle("V2")
     assert found is not None
     assert (found.heading, found.heading_stated) == ("E", False)
 
 
 def test_make_model_year_and_kind_are_told_apart() -> None:
-    facts = crash_facts("Vehicle #1, a red 1998 Ford F-150 pickup, was southbound. Vehicle #2 was a 2001 Kia Rio.")
+    facts = read("Vehicle #1, a red 1998 Ford F-150 pickup, was southbound. Vehicle #2 was a 2001 Kia Rio.").crash
     first, second = facts.vehicles
     assert (first.year, first.make, first.model, first.kind) == (1998, "Ford", "F-150", "pickup")
     assert (second.year, second.make, second.model, second.kind) == (2001, "Kia", "Rio", "car")
 
 
 def test_a_volvo_v70_is_no_seventieth_vehicle() -> None:
-    facts = crash_facts("Vehicle #1, a 2001 Volvo V70, was northbound. The Volvo V70 struck Vehicle #2 in the rear.")
+    facts = read("Vehicle #1, a 2001 Volvo V70, was northbound. The Volvo V70 struck Vehicle #2 in the rear.").crash
     assert [v.id for v in facts.vehicles] == ["V1", "V2"]
 
 
 def test_speed_lane_and_driveways_are_kept() -> None:
-    facts = crash_facts(
+    facts = read(
         "V1 was eastbound in lane two at 40-50 km/h (25-31 mph). V2 was exiting a driveway on the right and turned "
         "left into the "
         "path of V1. The front of V1 struck the left side of V2."
-    )
+    ).crash
     first, second = facts.vehicles
     assert (first.lane, first.speed_mph) == (2, 28)
     assert (second.origin, second.maneuver, second.heading) == ("driveway", "turn_left", "N")
 
 
 def test_what_a_single_vehicle_hits_becomes_an_object() -> None:
-    facts = crash_facts(
+    facts = read(
         "V1 was northbound, departed the right side of the road and struck a utility pole with its front."
-    )
+    ).crash
     assert [(o.id, o.kind, o.word) for o in facts.others] == [("O1", "object", "pole")]
     assert facts.contacts[0].struck == "O1"
 
@@ -650,26 +650,26 @@ REDACTED = (
 
 
 def test_facts_are_the_same_without_the_persons() -> None:
-    bare = crash_facts(redact(REDACTED))
-    assert bare == crash_facts(REDACTED)
+    bare = read(redact(REDACTED)).crash
+    assert bare == read(REDACTED).crash
     assert [v.speed_mph for v in bare.vehicles] == [30, 10]
 
 
 def test_they_after_both_vehicles_are_all_of_them() -> None:
-    found = crash_facts("V1 and V2 were on a two-lane road. They were traveling north. V1 struck the back of V2.")
+    found = read("V1 and V2 were on a two-lane road. They were traveling north. V1 struck the back of V2.").crash
     assert [v.heading for v in found.vehicles] == ["N", "N"]
 
 
 def test_a_slip_of_the_space_bar_hides_no_vehicle() -> None:
-    found = crash_facts("V1 was traveling east. V2 was traveling west. The driver ofV2 drove across the center line.")
+    found = read("V1 was traveling east. V2 was traveling west. The driver ofV2 drove across the center line.").crash
     assert found.vehicles[1].maneuver == "crossing_centerline"
 
 
 def test_who_drives_in_the_opposing_lane_comes_over_the_line() -> None:
-    found = crash_facts(
+    found = read(
         "V1 was traveling east in the left eastbound lane of a freeway. V2 was traveling west in the left eastbound "
         "lane of the same road. The front of V2 struck the front of V1."
-    )
+    ).crash
     assert [v.maneuver for v in found.vehicles] == ["straight", "crossing_centerline"]
 
 
@@ -677,16 +677,16 @@ def test_who_drives_in_the_opposing_lane_comes_over_the_line() -> None:
     ("in the fifth lane", 5), ("in the #3 lane", 3), ("in the number 2 lane", 2), ("in lane four", 4),
 ])  # fmt: skip
 def test_lanes_are_read_by_number(told: str, lane: int) -> None:
-    assert crash_facts(f"V1 was traveling north {told} of a ten-lane freeway.").vehicles[0].lane == lane
+    assert read(f"V1 was traveling north {told} of a ten-lane freeway.").crash.vehicles[0].lane == lane
 
 
 def test_one_trailer_is_a_trailer() -> None:
-    found = crash_facts("V1, a 2004 Freightliner tractor pulling one trailer, was traveling east.")
+    found = read("V1, a 2004 Freightliner tractor pulling one trailer, was traveling east.").crash
     assert found.vehicles[0].trailer
 
 
 def test_a_ramp_is_known_through_all_its_adjectives() -> None:
-    found = crash_facts("V1 was traveling northeast on a one-lane, one-way freeway entrance ramp and merged.")
+    found = read("V1 was traveling northeast on a one-lane, one-way freeway entrance ramp and merged.").crash
     assert found.vehicles[0].origin == "ramp"
 
 
@@ -695,7 +695,7 @@ def test_a_ramp_is_known_through_all_its_adjectives() -> None:
     ("It was dark, with streetlights.", "dark_lit"), ("It was dark and unlighted.", "dark"),
 ])  # fmt: skip
 def test_lamps_light_a_road_only_where_there_are_some(told: str, light: str) -> None:
-    assert crash_facts(f"V1 was traveling east. {told}").light == light
+    assert read(f"V1 was traveling east. {told}").crash.light == light
 
 
 @pytest.mark.parametrize(("told", "started"), [
@@ -707,26 +707,26 @@ def test_lamps_light_a_road_only_where_there_are_some(told: str, light: str) -> 
     ("V1 was stopped at a red light.", False),
 ])  # fmt: skip
 def test_who_stood_and_moved_on_starts_from_a_stop(told: str, started: bool) -> None:
-    found = crash_facts(f"V1 was traveling north. {told} V2 was traveling west. V2 struck the right of V1.")
+    found = read(f"V1 was traveling north. {told} V2 was traveling west. V2 struck the right of V1.").crash
     assert found.vehicles[0].from_stop == started
 
 
 def test_to_be_passed_by_is_not_to_overtake() -> None:
-    found = crash_facts("V1 was eastbound. V2 was northbound and turned left. As V1 passed by V2, V2 contacted V1.")
+    found = read("V1 was eastbound. V2 was northbound and turned left. As V1 passed by V2, V2 contacted V1.").crash
     assert found.vehicles[0].maneuver == "straight"
 
 
 def test_speeds_in_brackets_count() -> None:
-    assert crash_facts("V1 was traveling north between 34 and 48 kmph (21 and 30 mph).").vehicles[0].speed_mph == 26
+    assert read("V1 was traveling north between 34 and 48 kmph (21 and 30 mph).").crash.vehicles[0].speed_mph == 26
 
 
 def test_a_parked_vehicle_stands_along_the_road() -> None:
-    found = crash_facts("V1 was traveling east. V2 was parked at the left edge. V1's front struck V2's right side.")
+    found = read("V1 was traveling east. V2 was parked at the left edge. V1's front struck V2's right side.").crash
     assert found.vehicles[1].heading in ("E", "W")
 
 
 def test_who_negotiates_the_curve_of_a_ramp_is_on_it() -> None:
-    assert crash_facts("V1 was negotiating the right curve of the ramp.").vehicles[0].origin == "ramp"
+    assert read("V1 was negotiating the right curve of the ramp.").crash.vehicles[0].origin == "ramp"
 
 
 @pytest.mark.parametrize(("told", "weather"), [
@@ -734,11 +734,11 @@ def test_who_negotiates_the_curve_of_a_ramp_is_on_it() -> None:
     ("It was misty.", "fog"), ("There was fog.", "fog"),
 ])  # fmt: skip
 def test_a_mistake_is_no_mist(told: str, weather: str | None) -> None:
-    assert crash_facts(f"V1 was traveling east. {told}").weather == weather
+    assert read(f"V1 was traveling east. {told}").crash.weather == weather
 
 
 def test_letting_others_pass_is_not_overtaking() -> None:
-    found = crash_facts("V1 was traveling north when it slowed to allow several vehicles to pass. V2 struck V1.")
+    found = read("V1 was traveling north when it slowed to allow several vehicles to pass. V2 struck V1.").crash
     assert found.vehicles[0].maneuver != "overtaking"
 
 
@@ -748,12 +748,12 @@ def test_letting_others_pass_is_not_overtaking() -> None:
 ])  # fmt: skip
 def test_two_rear_corners_touch_with_their_flanks_unless_somebody_backs(second: str, sides: dict[str, str]) -> None:
     text = f"V1 was stopped facing north. {second} The right rear corner of V2 contacted the left rear corner of V1."
-    found = crash_facts(text).contacts[0]
+    found = read(text).crash.contacts[0]
     assert {found.striker: found.striker_area, found.struck: found.struck_area} == sides
 
 
 def test_a_corner_whose_flank_is_not_told_may_be_any_of_its_sides() -> None:
     text = "V1 was northbound. V2 was northbound ahead of it. The right side of V1 struck the rear corner of V2."
-    first = crash_facts(text).contacts[0]
+    first = read(text).crash.contacts[0]
     assert (first.struck_area, first.struck_may, first.areas_stated) == ("back", ("back", "left", "right"), False)
     assert (first.striker_area, first.striker_may) == ("right", ("right",))

@@ -8,7 +8,7 @@ from matplotlib.path import Path as Outline
 from flows.player.road_shapes import drawing_of
 from sgcad_core.case.records import RoadNetwork, Scenario
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.roads.gores import WIDEST_M, gores
 from tests.sgcad_core.reading.place_cases import assert_passes_what_roads_pass, written
 
@@ -74,5 +74,5 @@ def test_who_strikes_an_attenuator_in_the_gore_drives_through_the_gore() -> None
 
 def test_a_gore_that_nobody_is_in_is_named() -> None:
     text = "V1 was traveling north on a freeway and was near the gore point. The front of V1 struck the back of V2."
-    assert "gore" in road_facts(text).junction.unsupported
-    assert "gore" not in road_facts(BACK).junction.unsupported
+    assert "gore" in read(text).roads.junction.unsupported
+    assert "gore" not in read(BACK).roads.junction.unsupported

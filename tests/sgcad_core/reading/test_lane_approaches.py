@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.records.specs import Leg
 
 AT = "The crash was at a four-leg intersection. "
 
 
 def _legs(text: str) -> dict[str, Leg]:
-    return {leg.bearing: leg for leg in layout_of_facts(road_facts(text)).legs}
+    return {leg.bearing: leg for leg in layout_of_facts(read(text).roads).legs}
 
 
 @pytest.mark.parametrize(
@@ -38,9 +38,9 @@ def test_a_leg_has_the_lanes_that_are_listed_of_it(
 
 
 def test_lanes_where_somebody_drives_are_no_list() -> None:
-    legs = road_facts(
+    legs = read(
         AT + "V1 came from the north in the left-turn lane and V2 in the second of three lanes."
-    ).approaches
+    ).roads.approaches
     assert legs.named == ()
 
 
@@ -49,12 +49,12 @@ def test_listed_legs_of_two_roads_make_a_crossing() -> None:
         "V1 was northbound and hit V2. From the north and the south two lanes come in, for through and for left turns;"
     )
     text += " from the east and the west a right-turn lane and a through lane come in."
-    assert road_facts(text).junction.kind == "four_leg"
+    assert read(text).roads.junction.kind == "four_leg"
 
 
 def test_a_leg_with_turn_lanes_only_is_the_stem() -> None:
     text = "At the T-intersection V1 was northbound. The west leg has a right-turn lane and a left-turn lane."
-    assert road_facts(text).junction.stem == "W"
+    assert read(text).roads.junction.stem == "W"
 
 
 def test_a_total_is_filled_with_lanes_that_go_on() -> None:

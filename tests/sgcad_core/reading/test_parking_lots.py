@@ -8,7 +8,7 @@ from lxml import etree
 
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.layout.layout_places import parking_lot
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 from tests.sgcad_core.reading.place_cases import assert_passes_what_roads_pass, written
 
 PARKED = (
@@ -31,13 +31,13 @@ LEAVES = (
 
 @pytest.mark.parametrize(("text", "legs"), [(PARKED, 2), (BACKS, 2), (CROSS, 4)])
 def test_a_crash_inside_a_parking_lot_gets_its_aisles(text: str, legs: int) -> None:
-    layout = layout_of_facts(road_facts(text))
+    layout = layout_of_facts(read(text).roads)
     assert len(layout.legs) == legs
     assert {(leg.kind, leg.beside) for leg in layout.legs} == {("driveway", ("parking",))}
 
 
 def test_who_comes_out_of_a_parking_lot_crashes_on_the_street() -> None:
-    facts = road_facts(LEAVES)
+    facts = read(LEAVES).roads
     assert facts.junction.kind == "driveway"
     assert all("parking" not in leg.beside for leg in layout_of_facts(facts).legs)
 
@@ -84,7 +84,7 @@ def test_who_is_parked_in_a_stall_faces_as_told_and_the_aisle_lies_square_to_it(
 
 
 def test_a_told_aisle_stays_beside_one_along_which_nobody_is_told_to_drive() -> None:
-    facts = road_facts("The crash occurred in a parking lot. V1 was northbound. The front of V1 struck V2.")
+    facts = read("The crash occurred in a parking lot. V1 was northbound. The front of V1 struck V2.").roads
     assert {leg.bearing for leg in parking_lot(facts, "E").legs} == set("NESW")
 
 

@@ -6,7 +6,7 @@ from plugins.road_writer.template import Template
 from plugins.scenario_writer.rules import Rules
 from sgcad_core.case.records import Context, Scenario
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 
 MERGES = (
     "V1 was traveling on an entrance ramp and was merging onto a four-lane divided interstate highway heading east. "
@@ -46,7 +46,7 @@ def test_who_merges_stays_on_the_ramp_and_the_road() -> None:
 @pytest.mark.parametrize(("count", "each"), [("three", 3), ("two", 2), ("four", 2)])
 def test_a_freeways_lanes_are_those_of_one_carriageway_where_they_cannot_be_of_both(count: str, each: int) -> None:
     text = f"V1 was eastbound on the interstate, which has {count} lanes. The front of V1 struck the back of V2."
-    assert {(leg.lanes_in, leg.lanes_out) for leg in layout_of_facts(road_facts(text)).legs} == {(each, each)}
+    assert {(leg.lanes_in, leg.lanes_out) for leg in layout_of_facts(read(text).roads).legs} == {(each, each)}
 
 
 def test_one_that_merges_from_a_ramp_heads_as_the_road_that_it_joins() -> None:
@@ -54,15 +54,15 @@ def test_one_that_merges_from_a_ramp_heads_as_the_road_that_it_joins() -> None:
         "V2 was on the entrance ramp merging onto the eastbound interstate. V1 was in the right lane. V2 merged into "
         "the path of V1 and the left side of V2 was struck by the right front of V1."
     )
-    assert [v.heading for v in road_facts(text).crash.vehicles] == ["E", "E"]
+    assert [v.heading for v in read(text).roads.crash.vehicles] == ["E", "E"]
 
 
 def test_an_exit_ramp_leads_off_the_road_ahead() -> None:
-    legs = {leg.bearing: leg for leg in layout_of_facts(road_facts(LEAVES)).legs}
+    legs = {leg.bearing: leg for leg in layout_of_facts(read(LEAVES).roads).legs}
     assert (legs["SE"].kind, legs["SE"].lanes_in, legs["SE"].lanes_out) == ("ramp", 0, 1)
     assert scenario(LEAVES).oddity < 0.5
 
 
 def test_an_entrance_ramp_leads_onto_it() -> None:
-    legs = {leg.bearing: leg for leg in layout_of_facts(road_facts(MERGES)).legs}
+    legs = {leg.bearing: leg for leg in layout_of_facts(read(MERGES).roads).legs}
     assert (legs["SW"].kind, legs["SW"].lanes_in, legs["SW"].lanes_out) == ("ramp", 1, 0)

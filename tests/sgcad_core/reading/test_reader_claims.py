@@ -1,7 +1,7 @@
 """What rules and a model claim of one crash, in the same terms."""
 
 from sgcad_core.reading.reading import read
-from sgcad_core.reading.second_reader.answered_claims import model_claims
+from sgcad_core.reading.second_reader.answered_values import model_claims
 from sgcad_core.reading.second_reader.field_claims import KINDS, UNKNOWN_P, by_axis, kind_of, rules_claim
 from sgcad_core.records.second_reader import Answered
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout

@@ -18,7 +18,7 @@ from sgcad_core.reading.language.data import vocabulary
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.text.normalise import normalize
 from sgcad_core.reading.text.privacy import redacted
-from sgcad_core.reading.text.traced_text import Traced, placed, runs
+from sgcad_core.reading.text.traced_text import TracedText, placed, runs
 from sgcad_core.settings import ROOT
 
 TEXT = (
@@ -51,7 +51,7 @@ def test_a_fact_points_to_its_sentence_as_it_was_written():
 
 
 def test_redaction_moves_no_place():
-    bare = redacted(Traced.of(TEXT))
+    bare = redacted(TracedText.of(TEXT))
     assert "45" not in bare.text
     found = {f.field: f for f in read(placed(bare.text, runs(bare))).facts}
     assert sentence(TEXT, found["contacts.0.struck"]) == "The front of V1 struck the left side of V2."
@@ -112,9 +112,9 @@ def test_what_nobody_tells_of_directions_is_an_assumption_of_the_first_vehicle_a
 # ------------------------------------------------------------------ once
 def test_a_case_splits_and_resolves_its_narrative_once(monkeypatch, tmp_path):
     counted = []
-    split, resolve = reader.split_sentences, reader.tell
+    split, resolve = reader.split_sentences, reader.resolve_sentences
     monkeypatch.setattr(reader, "split_sentences", lambda text: counted.append("split") or split(text))
-    monkeypatch.setattr(reader, "tell", lambda *told: counted.append("resolve") or resolve(*told))
+    monkeypatch.setattr(reader, "resolve_sentences", lambda *told: counted.append("resolve") or resolve(*told))
     source = ROOT / "docs" / "demo" / "left-turn-at-signal"
     ending = run_case(load(ROOT / "configs" / "template.yaml"), Case(source, "c1"), tmp_path, "d1")
     assert ending.result["status"] == "generated"

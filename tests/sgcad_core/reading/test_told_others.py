@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from sgcad_core.reading.actors.makes import kind_of
-from sgcad_core.reading.reading import crash_facts, read
-from sgcad_core.reading.roads.median import divided_and_median
+from sgcad_core.reading.reading import read
+from sgcad_core.reading.roads.lanes import divided_and_median
 from sgcad_core.records.specs import ActorKind
 
 
@@ -55,22 +55,22 @@ PAIRS = [
 
 @pytest.mark.parametrize(("told", "other"), PAIRS)
 def test_the_other_one_is_found_by_other_words(told: str, other: str) -> None:
-    contact = crash_facts(told).contacts[0]
+    contact = read(told).crash.contacts[0]
     assert contact.stated
     assert {contact.striker, contact.struck} == {"V1", other}
 
 
 def test_who_backs_touches_with_its_back() -> None:
     told = "The Acme AV was stopped. A van backed out of a stall and hit the left side of the Acme AV."
-    facts = crash_facts(told)
+    facts = read(told).crash
     areas = {facts.contacts[0].striker: facts.contacts[0].striker_area}
     areas[facts.contacts[0].struck] = facts.contacts[0].struck_area
     assert areas == {"V1": "left", "V2": "back"}
 
 
 def test_a_push_is_a_contact_of_who_is_pushed() -> None:
-    facts = crash_facts("The Acme AV was stopped, and a car stood behind it. A bus ran into the car and shoved it into "
-                        "the rear bumper of the Acme AV.")  # fmt: skip
+    facts = read("The Acme AV was stopped, and a car stood behind it. A bus ran into the car and shoved it into "
+                        "the rear bumper of the Acme AV.").crash  # fmt: skip
     assert {facts.contacts[0].striker, facts.contacts[0].struck} == {"V1", "V2"}
 
 
@@ -90,7 +90,7 @@ def test_a_push_is_a_contact_of_who_is_pushed() -> None:
     ],
 )  # fmt: skip
 def test_who_moves_into_somebody_touches_them_on_the_told_side(text: str, headings: str, contact: str) -> None:
-    facts = crash_facts(text)
+    facts = read(text).crash
     (first,) = facts.contacts
     assert "".join(v.heading or "-" for v in facts.vehicles) == headings
     assert f"{first.striker} {first.striker_area} {first.struck} {first.struck_area}" == contact

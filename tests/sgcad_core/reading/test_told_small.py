@@ -9,7 +9,7 @@ from sgcad_core.reading.behavior.behavior import behavior_of_facts
 from sgcad_core.reading.behavior.exit_assignment import assign
 from sgcad_core.reading.behavior.lane_choice import lane_of
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
-from sgcad_core.reading.reading import crash_facts, read, road_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.roads.layout import road_spec
 
 STRUCK = " The front of V2 struck the rear of V1."
@@ -27,7 +27,7 @@ STRUCK = " The front of V2 struck the rear of V1."
     ],
 )
 def test_a_lane_is_counted_from_the_side_that_is_told(told: str, lane: int) -> None:
-    facts = road_facts(told + STRUCK)
+    facts = read(told + STRUCK).roads
     spec = road_spec(layout_of_facts(facts))
     placed = assign(facts.crash, spec)
     assert lane_of(facts.crash.vehicles[0], placed, facts.crash) == lane
@@ -42,7 +42,7 @@ def test_a_lane_is_counted_from_the_side_that_is_told(told: str, lane: int) -> N
     ],
 )
 def test_who_pulled_out_from_a_stop_does_not_cross_at_the_speed_of_its_approach(told: str) -> None:
-    facts = road_facts(f"V1 was eastbound at 45 mph. {told} The front of V1 struck the left side of V2.")
+    facts = read(f"V1 was eastbound at 45 mph. {told} The front of V1 struck the left side of V2.").roads
     behavior = behavior_of_facts(facts.crash, road_spec(layout_of_facts(facts)))
     speeds = {actor.id: actor.speed_mph for actor in behavior.actors}
     assert speeds["V1"] == 45
@@ -50,10 +50,10 @@ def test_who_pulled_out_from_a_stop_does_not_cross_at_the_speed_of_its_approach(
 
 
 def test_a_speed_that_is_told_behind_the_stop_is_kept() -> None:
-    facts = crash_facts(
+    facts = read(
         "V1 was eastbound. V2, northbound, stopped at the stop sign. V2 then accelerated to 25 mph. The front of V1 "
         "struck the left side of V2."
-    )
+    ).crash
     assert facts.vehicles[1].speed_mph == 25
 
 
@@ -70,7 +70,7 @@ def test_a_speed_that_is_told_behind_the_stop_is_kept() -> None:
     ],
 )  # fmt: skip
 def test_who_backs_out_of_a_driveway_comes_across_the_road(told: str, headings: str) -> None:
-    vehicle = crash_facts(told).vehicles[1]
+    vehicle = read(told).crash.vehicles[1]
     assert (vehicle.maneuver, vehicle.origin, vehicle.heading) == ("backing", "driveway", headings)
 
 
@@ -85,7 +85,7 @@ def test_who_backs_out_of_a_driveway_comes_across_the_road(told: str, headings: 
     ],
 )
 def test_who_steps_off_the_sidewalk_is_met_from_the_side(told: str) -> None:
-    facts = crash_facts(told)
+    facts = read(told).crash
     contact = facts.contacts[0]
     assert (contact.striker, contact.struck, contact.striker_area) == ("V1", "P1", "front")
     assert contact.struck_area in ("left", "right")
@@ -100,7 +100,7 @@ def test_who_steps_off_the_sidewalk_is_met_from_the_side(told: str) -> None:
     ],
 )  # fmt: skip
 def test_who_did_something_and_was_struck_is_struck(told: str, pair: tuple[str, str]) -> None:
-    contact = crash_facts(told).contacts[0]
+    contact = read(told).crash.contacts[0]
     assert (contact.striker, contact.struck) == pair
 
 
@@ -117,7 +117,7 @@ def test_who_did_something_and_was_struck_is_struck(told: str, pair: tuple[str, 
     ],
 )
 def test_a_parked_vehicle_without_a_number_is_an_actor_of_its_own(told: str, kind: str, area: str) -> None:
-    facts = crash_facts(told)
+    facts = read(told).crash
     assert facts.gap is None
     assert [(v.id, v.kind, v.maneuver) for v in facts.vehicles][1] == ("O1", kind, "parked")
     assert (facts.contacts[0].striker, facts.contacts[0].struck, facts.contacts[0].struck_area) == ("V1", "O1", area)
@@ -132,15 +132,15 @@ def test_a_parked_vehicle_without_a_number_is_an_actor_of_its_own(told: str, kin
     ],
 )
 def test_a_parked_vehicle_that_has_a_number_or_is_not_hit_gets_none(told: str) -> None:
-    assert [v.id for v in crash_facts(told).vehicles] == ["V1", "V2"]
+    assert [v.id for v in read(told).crash.vehicles] == ["V1", "V2"]
 
 
 def test_beside_a_parked_vehicle_the_other_of_two_is_the_numbered_one() -> None:
-    facts = crash_facts(
+    facts = read(
         "V1 was northbound and V2 was southbound. V2 crossed the centerline and sideswiped the other vehicle. "
         "V1 then hit "
         "a parked pickup truck. The parked pickup truck was pushed onto the sidewalk."
-    )
+    ).crash
     assert [(c.striker, c.struck) for c in facts.contacts] == [("V2", "V1"), ("V1", "O1")]
 
 
@@ -169,7 +169,7 @@ STAND_BESIDE = [
 
 @pytest.mark.parametrize(("told", "who", "maneuver"), STAND_BESIDE)
 def test_what_is_said_of_somebody_beside_is_not_the_subjects(told: str, who: str, maneuver: str) -> None:
-    vehicle = crash_facts(told).vehicle(who)
+    vehicle = read(told).crash.vehicle(who)
     assert vehicle is not None
     assert vehicle.maneuver == maneuver
 
@@ -199,7 +199,7 @@ DONE_AND_MEANT = [
 
 @pytest.mark.parametrize(("told", "who", "maneuver"), DONE_AND_MEANT)
 def test_what_was_over_or_only_waited_for_is_no_maneuver(told: str, who: str, maneuver: str) -> None:
-    facts = crash_facts(told)
+    facts = read(told).crash
     vehicle = facts.vehicle(who) or next(v for v in facts.vehicles if v.id != "V1")
     assert vehicle.maneuver == maneuver
 

@@ -11,7 +11,7 @@ from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.planner.lines.actor_course import find_course
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.records.specs import Actor, Leg, RoadLayout
 from sgcad_core.roads.closures import cones, tapers
 from sgcad_core.roads.layout import road_spec
@@ -35,7 +35,7 @@ UNSAID = (
 
 @pytest.mark.parametrize(("text", "leg", "closed"), [(RIGHT, "N", (1,)), (LEFT, "S", (2, 3)), (UNSAID, "E", (2,))])
 def test_the_told_lanes_are_closed_ahead(text: str, leg: str, closed: tuple[int, ...]) -> None:
-    layout = layout_of_facts(road_facts(text))
+    layout = layout_of_facts(read(text).roads)
     assert {one.bearing: one.closed_out for one in layout.legs if one.closed_out} == {leg: closed}
 
 
@@ -48,13 +48,13 @@ def test_the_told_lanes_are_closed_ahead(text: str, leg: str, closed: tuple[int,
     ],
 )
 def test_a_work_zone_that_is_not_drawn_is_named(text: str) -> None:
-    facts = road_facts(text)
+    facts = read(text).roads
     assert "work_zone" in facts.junction.unsupported
     assert not any(leg.closed_out for leg in layout_of_facts(facts).legs)
 
 
 def test_a_closed_lane_is_named_where_nobody_is_told_to_drive_any_way() -> None:
-    facts = road_facts("V1 saw too late that the lane was closed by cones. V1 hit V2 from behind.")
+    facts = read("V1 saw too late that the lane was closed by cones. V1 hit V2 from behind.").roads
     assert facts.closed is not None or "work_zone" in facts.junction.unsupported
 
 
@@ -62,7 +62,7 @@ def test_a_lane_behind_a_stalled_truck_is_not_closed() -> None:
     text = (
         "V1 was traveling north on a four-lane road. The right lane was blocked by a truck. The front of V1 struck V2."
     )
-    facts = road_facts(text)
+    facts = read(text).roads
     assert facts.closed is None
     assert facts.junction.unsupported == ()
 

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from sgcad_core.case.records import Finding
 from sgcad_core.reading.reading import read
-from sgcad_core.reading.reading_with_edits import holds, mended
+from sgcad_core.reading.reading_with_edits import holds, with_edits
 from sgcad_core.records.edits import AS_READ, Edit, by_person, canonical, effective
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
@@ -127,7 +127,7 @@ def test_a_layout_comes_back_from_its_spec():
 # ------------------------------------------------------------------ the reading
 def test_a_reading_goes_by_a_person():
     given = edits(V1__maneuver="straight", V2__heading="N", contacts__0__struck_area="front", junction__kind="four_leg")
-    reading = mended(read(TEXT), given)
+    reading = with_edits(read(TEXT), given)
     assert [(v.maneuver, v.heading, v.heading_stated) for v in reading.crash.vehicles][1] == ("straight", "N", True)
     assert reading.crash.vehicles[0].maneuver == "straight"
     assert reading.crash.contacts[0].struck_may == ("front",)
@@ -140,8 +140,8 @@ def test_a_reading_goes_by_a_person():
 
 def test_a_reading_that_nobody_changed_is_the_same_one():
     reading = read(TEXT)
-    assert mended(reading, ()) is reading
-    assert mended(reading, edits(V1__maneuver=AS_READ)) is reading
+    assert with_edits(reading, ()) is reading
+    assert with_edits(reading, edits(V1__maneuver=AS_READ)) is reading
 
 
 def test_facts_of_a_person_take_the_place_of_the_text():

@@ -20,7 +20,7 @@ from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.planner.lines.route import find_route
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.records.specs import Access, Actor, Compass, Leg, RoadLayout, centers
 from sgcad_core.roads.describe import describe_network, road_ids
 from sgcad_core.roads.lane_graph import LaneGraph
@@ -152,7 +152,7 @@ PASSED = (
 
 @pytest.mark.parametrize(("text", "lanes"), TOLD.items())
 def test_a_report_of_a_crash_in_a_roundabout_gets_one(text: str, lanes: int) -> None:
-    facts = road_facts(text)
+    facts = read(text).roads
     assert facts.junction.kind == "roundabout"
     assert facts.junction.stated
     assert layout_of_facts(facts).circle_lanes == lanes
@@ -160,11 +160,11 @@ def test_a_report_of_a_crash_in_a_roundabout_gets_one(text: str, lanes: int) -> 
 
 @pytest.mark.parametrize("text", PASSED)
 def test_a_roundabout_in_passing_makes_none(text: str) -> None:
-    assert layout_of_facts(road_facts(text)).circle_lanes == 0
+    assert layout_of_facts(read(text).roads).circle_lanes == 0
 
 
 def test_the_lanes_around_are_those_of_no_road() -> None:
-    facts = road_facts("V1 was traveling north and entered a single-lane roundabout. V1 struck the rear of V2.")
+    facts = read("V1 was traveling north and entered a single-lane roundabout. V1 struck the rear of V2.").roads
     assert [road.lanes.total for road in facts.roads] in ([], [None])
 
 

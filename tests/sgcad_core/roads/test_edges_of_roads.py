@@ -20,7 +20,7 @@ from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.reading.roads.told_roads import told_roads
 from sgcad_core.records.specs import Beside, Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
@@ -119,7 +119,7 @@ TOLD = {
 
 @pytest.mark.parametrize(("text", "beside"), TOLD.items())
 def test_edges_of_roads_are_drawn_where_told(text: str, beside: set[str]) -> None:
-    for leg in layout_of_facts(road_facts(text)).legs:
+    for leg in layout_of_facts(read(text).roads).legs:
         assert set(leg.beside) == beside
 
 
@@ -128,12 +128,12 @@ WALKS = "V1 was northbound on a residential street, turning left at a four-leg i
 
 @pytest.mark.parametrize("end", [" in the crosswalk.", " with its front."])
 def test_a_pedestrian_at_a_junction_crosses_on_a_crosswalk(end: str) -> None:
-    legs = layout_of_facts(road_facts(WALKS + end)).legs
+    legs = layout_of_facts(read(WALKS + end).roads).legs
     assert all(leg.crosswalk and "sidewalk" in leg.beside for leg in legs)
 
 
 def test_a_crosswalk_between_junctions_leads_over_the_road_once() -> None:
-    facts = road_facts("V1 was northbound on a two-lane street and struck a pedestrian in a marked crosswalk.")
+    facts = read("V1 was northbound on a two-lane street and struck a pedestrian in a marked crosswalk.").roads
     assert [leg.crosswalk for leg in layout_of_facts(facts).legs] == [True, False]
 
 
@@ -147,7 +147,7 @@ def test_a_crosswalk_between_junctions_leads_over_the_road_once() -> None:
     ],
 )
 def test_the_type_of_a_road_follows_from_what_is_told(text: str, area: str) -> None:
-    facts = road_facts(text)
+    facts = read(text).roads
     told = told_roads(facts, road_spec(layout_of_facts(facts)))
     assert {road.area for road in told.values()} == {area}
 

@@ -14,7 +14,7 @@ from research.rows.coded_rows import allowed, incidents_of_part, row
 from research.rows.partial_labels import load
 from research.training.weight_fit import calibration_error
 from sgcad_core.reading.second_reader.fuse_gist import model_right
-from sgcad_core.reading.second_reader.seven_question_gist import RulesSay
+from sgcad_core.reading.second_reader.seven_question_gist import RuleValues
 from sgcad_core.records.second_reader import Heard
 
 TEXT = (
@@ -72,7 +72,7 @@ def cases(*kinds: tuple[str, str, float, bool, int]) -> list[Case]:
     """Cases of one field: what the rules say, the model says, its p, whether the rules' is told; truth is stopped."""
     found = []
     for rule, model, p, told, count in kinds:
-        say = RulesSay({"subject": rule}, frozenset({"subject"} if told else ()))
+        say = RuleValues({"subject": rule}, frozenset({"subject"} if told else ()))
         case = Case("kit-1", {"subject": ("stopped",)}, say, {"subject": Heard(value=model, p=p)})
         found += [case] * count
     return found

@@ -12,7 +12,7 @@ from research.benchmarks.texts.outside import confidence, crossed, fit, right, r
 from research.benchmarks.texts.outside_cases import Case, cases, evidence_of, truth_of, with_drawing
 from research.generator.writer_texts import Written, load, report_of, shipped
 from research.training.weight_fit import versus
-from sgcad_core.reading.second_reader.answered_claims import model_claims
+from sgcad_core.reading.second_reader.answered_values import model_claims
 from sgcad_core.reading.second_reader.field_claims import Claim, kind_of
 from sgcad_core.records.second_reader import DRAWN, WHOLE, Answered, Opinion, Weights
 from sgcad_core.records.specs import BehaviorSpec, RoadLayout

@@ -6,7 +6,7 @@ import pytest
 
 from sgcad_core.errors import Refused
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
-from sgcad_core.reading.reading import crash_facts, read
+from sgcad_core.reading.reading import read
 from sgcad_core.reading.text.normalise import sentences
 from sgcad_core.records.specs import Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
@@ -32,21 +32,21 @@ def test_a_text_with_numbers_keeps_its_phrases() -> None:
 
 
 def test_who_was_announced_is_not_counted_twice() -> None:
-    facts = crash_facts(
+    facts = read(
         "On May 3 an Acme Autonomous Vehicle (Acme AV) was in a collision involving a pickup truck on Oak. "
         "The Acme AV was "
         "parked facing north. A pickup truck traveling north made contact with the rear of the parked Acme AV."
-    )
+    ).crash
     assert [(v.id, v.kind) for v in facts.vehicles] == [("V1", "car"), ("V2", "pickup")]
     assert facts.contacts[0].striker == "V2"
 
 
 def test_who_touches_nobody_is_no_actor() -> None:
-    facts = crash_facts(
+    facts = read(
         "The Acme AV was stopped behind a bus. A van approached from behind and its front made contact with "
         "the rear of the "
         "Acme AV."
-    )
+    ).crash
     assert [(v.id, v.kind, v.maneuver) for v in facts.vehicles] == [("V1", "car", "stopped"), ("V2", "van", "straight")]
 
 
@@ -100,7 +100,7 @@ MANEUVERS = [
 
 @pytest.mark.parametrize(("text", "maneuvers"), MANEUVERS)
 def test_what_is_told_last_before_the_contact_is_what_a_vehicle_did(text: str, maneuvers: tuple[str, str]) -> None:
-    assert tuple(v.maneuver for v in crash_facts(text).vehicles) == maneuvers
+    assert tuple(v.maneuver for v in read(text).crash.vehicles) == maneuvers
 
 
 REFUSED = [
@@ -121,47 +121,47 @@ def test_what_cannot_be_read_is_refused_by_name(text: str, reason: str) -> None:
         RoadLayout(legs=(Leg(bearing="N", lanes_in=1, lanes_out=1), Leg(bearing="S", lanes_in=1, lanes_out=1)))
     )
     with pytest.raises(Refused, match=reason) as refused:
-        behavior_of_facts(crash_facts(text), spec)
+        behavior_of_facts(read(text).crash, spec)
     assert refused.value.missing
 
 
 def test_a_first_mention_that_touches_nobody_is_no_subject() -> None:
-    facts = crash_facts("A car passed by. A van struck the rear of a stopped bus.")
+    facts = read("A car passed by. A van struck the rear of a stopped bus.").crash
     assert [(v.id, v.kind) for v in facts.vehicles] == [("V1", "van"), ("V2", "bus")]
 
 
 def test_a_crash_of_others_beside_the_subject_is_refused() -> None:
-    gap = crash_facts("The test vehicle was parked. A van struck the rear of a stopped bus.").gap
+    gap = read("The test vehicle was parked. A van struck the rear of a stopped bus.").crash.gap
     assert gap is not None
     assert "subject" in gap.reason
 
 
 def test_the_contact_of_the_subject_comes_before_those_of_others() -> None:
-    facts = crash_facts(
+    facts = read(
         "The Acme AV was at a red light. A van stopped behind the Acme AV. A bus struck the rear of the van, and "
         "the front of the van then made contact with the rear of the stopped Acme AV."
-    )
+    ).crash
     assert [(c.striker, c.struck) for c in facts.contacts] == [("V2", "V1"), ("V3", "V2")]
     assert [v.maneuver for v in facts.vehicles][:2] == ["stopped", "stopped"]
 
 
 def test_an_opened_door_is_a_side_of_its_vehicle() -> None:
-    contact = crash_facts(
+    contact = read(
         "The Acme AV was parked. A van passed as a rider in the Acme AV opened the rear left door and the door made "
         "contact with the right side of the van."
-    ).contacts[0]
+    ).crash.contacts[0]
     areas = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
     assert areas == {"V1": "left", "V2": "right"}
 
 
 def test_a_thing_without_a_name_of_its_own_is_hit() -> None:
-    facts = crash_facts("The Acme AV was northbound when its front made contact with a hanging chain.")
+    facts = read("The Acme AV was northbound when its front made contact with a hanging chain.").crash
     assert [(c.striker, c.struck) for c in facts.contacts] == [("V1", "O1")]
     assert facts.others[0].word == "chain"
 
 
 def test_a_car_that_hit_another_car_is_not_alone() -> None:
-    facts = crash_facts("A car hit another car. Nobody was hurt.")
+    facts = read("A car hit another car. Nobody was hurt.").crash
     assert [v.id for v in facts.vehicles] == ["V1", "V2"]
     assert [(c.striker, c.struck, c.stated) for c in facts.contacts] == [("V1", "V2", True)]
 
@@ -176,16 +176,16 @@ def test_a_car_that_hit_another_car_is_not_alone() -> None:
     ],
 )
 def test_an_end_and_a_side_are_a_corner_and_a_door_is_a_side(area: str, may: tuple[str, ...]) -> None:
-    found = crash_facts(f"A van struck the {area} of the stopped Acme AV.").contacts[0]
+    found = read(f"A van struck the {area} of the stopped Acme AV.").crash.contacts[0]
     assert found.struck == "V1"
     assert sorted(found.struck_may) == sorted(may)
 
 
 def test_driver_b_hit_the_truck_of_driver_a() -> None:
-    contact = crash_facts("Driver B hit Driver A's truck head-on.").contacts[0]
+    contact = read("Driver B hit Driver A's truck head-on.").crash.contacts[0]
     assert (contact.striker, contact.struck) == ("V2", "V1")
 
 
 def test_a_numbered_bicycle_is_one() -> None:
-    facts = crash_facts("V1 was northbound. V2, a bicycle, was southbound. V2 struck the front of V1.")
+    facts = read("V1 was northbound. V2, a bicycle, was southbound. V2 struck the front of V1.").crash
     assert [v.kind for v in facts.vehicles] == ["car", "bicycle"]

@@ -6,7 +6,7 @@ import pytest
 
 from sgcad_core.errors import Refused
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
-from sgcad_core.reading.reading import crash_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.records.specs import Access, Actor, BehaviorSpec, Leg, Node, Road, RoadLayout, RoadSpec
 from sgcad_core.roads.layout import road_spec
 
@@ -15,7 +15,7 @@ PLAIN = road_spec(RoadLayout(legs=tuple(Leg(bearing=b, lanes_in=1, lanes_out=1) 
 
 
 def _behavior(text: str, spec: RoadSpec = CROSS) -> BehaviorSpec:
-    return behavior_of_facts(crash_facts(text), spec)
+    return behavior_of_facts(read(text).crash, spec)
 
 
 def _actor(behavior: BehaviorSpec, name: str) -> Actor:

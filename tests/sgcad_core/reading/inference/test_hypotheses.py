@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from sgcad_core.reading.inference.hypotheses import ONWARD, hypotheses
-from sgcad_core.reading.reading import crash_facts
+from sgcad_core.reading.reading import read
 
 INTRO = "Vehicle #1 was a 2001 Ford Taurus traveling north. Vehicle #2 was a 1999 Honda Civic traveling east. "
 
 
 def words(text: str) -> list[str]:
-    return [one.words for one in hypotheses(crash_facts(INTRO + text))]
+    return [one.words for one in hypotheses(read(INTRO + text).crash)]
 
 
 def test_the_other_side_of_a_corner_comes_first() -> None:
@@ -24,18 +24,18 @@ def test_stated_sides_stay() -> None:
 
 def test_a_turn_is_given_to_the_other_at_a_price() -> None:
     text = "Vehicle #2 turned left. The front of Vehicle #1 struck the left side of Vehicle #2."
-    found = hypotheses(crash_facts(INTRO + text))
+    found = hypotheses(read(INTRO + text).crash)
     turn = next(one for one in found if one.words == "V1 makes the turn, not V2")
     assert {v.id: v.maneuver for v in turn.facts.vehicles} == {"V1": "turn_left", "V2": "straight"}
     assert turn.price == max(one.price for one in found)
 
 
 def test_a_lone_vehicle_has_no_other_reading() -> None:
-    assert hypotheses(crash_facts("Vehicle #1 was traveling north and struck a tree with its front.")) == []
+    assert hypotheses(read("Vehicle #1 was traveling north and struck a tree with its front.").crash) == []
 
 
 def test_each_reading_differs_in_one_thing() -> None:
-    facts = crash_facts(INTRO + "The left front of Vehicle #1 contacted the right rear of Vehicle #2.")
+    facts = read(INTRO + "The left front of Vehicle #1 contacted the right rear of Vehicle #2.").crash
     for other in hypotheses(facts):
         changed = sum(a != b for a, b in zip(facts.vehicles, other.facts.vehicles, strict=True))
         assert changed + (facts.contacts != other.facts.contacts) == 1
@@ -47,7 +47,7 @@ def test_slowing_gives_way_to_driving_on() -> None:
 
 
 def test_a_corner_is_open_only_where_a_report_numbers_nobody() -> None:
-    numbered = crash_facts(INTRO + "The front of Vehicle #1 struck the left front corner of Vehicle #2.")
+    numbered = read(INTRO + "The front of Vehicle #1 struck the left front corner of Vehicle #2.").crash
     assert not any(one.corner for one in hypotheses(numbered))
     text = "The AV was going north. The front of a van going east hit the left front corner of the AV."
-    assert any(one.corner for one in hypotheses(crash_facts(text)))
+    assert any(one.corner for one in hypotheses(read(text).crash))

@@ -7,7 +7,7 @@ from sgcad_core.case.records import Context
 from sgcad_core.errors import Refused
 from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
 from sgcad_core.reading.language import of_role
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 
 AT = {
     "Vehicle 1 was traveling north inside a parking garage when it struck the rear of Vehicle 2.": ("parking_garage",),
@@ -23,12 +23,12 @@ BESIDE = (
 
 @pytest.mark.parametrize(("text", "kinds"), AT.items())
 def test_the_place_of_the_crash_is_found(text: str, kinds: tuple[str, ...]) -> None:
-    assert road_facts(text).junction.unsupported == kinds
+    assert read(text).roads.junction.unsupported == kinds
 
 
 @pytest.mark.parametrize("text", BESIDE)
 def test_a_place_mentioned_in_passing_has_no_effect(text: str) -> None:
-    assert road_facts(text).junction.unsupported == ()
+    assert read(text).roads.junction.unsupported == ()
 
 
 def test_a_parking_garage_is_refused_by_name() -> None:

@@ -35,7 +35,7 @@ def roles_asked_for() -> frozenset[str]:
 @lru_cache(maxsize=1)
 def classes_asked_for() -> frozenset[str]:
     """Word classes that the code names."""
-    return frozenset(_named(r"\b(?:words|values|slot)\(\s*\"(\w+)\""))
+    return frozenset(_named(r"\b(?:words|values)\(\s*\"(\w+)\""))
 
 
 @lru_cache(maxsize=1)

@@ -6,8 +6,8 @@ import re
 
 import pytest
 
-from sgcad_core.reading.language.branches import alternatives, groups, only, without
 from sgcad_core.reading.language.data import language
+from tests.sgcad_core.reading.language.branches import alternatives, groups, only, without
 
 
 def _fewer(pattern: str) -> list[str]:

@@ -10,11 +10,11 @@ import pytest
 import yaml
 
 from sgcad_core.errors import ConfigError
-from sgcad_core.reading.language import data, of_role, rule, slot, values, words
-from sgcad_core.reading.language.data import SLOT, Language, language
-from sgcad_core.reading.language.examples import class_faults, faults, parsed, reads, rule_faults, written
+from sgcad_core.reading.language import data, of_role, rule, values, words
+from sgcad_core.reading.language.data import Language, language
 from sgcad_core.reading.language.records import RuleRecord, rule_record, word_class
 from sgcad_core.reading.reading import read
+from tests.sgcad_core.reading.language.examples import class_faults, faults, parsed, reads, rule_faults, written
 from tests.sgcad_core.reading.language.readings import (
     ROOT,
     asked_for,
@@ -78,7 +78,7 @@ def test_code_and_rules_use_every_word_class() -> None:
     texts = [p for r in language().rules.values() for p in r.alternatives]
     texts += [p for c in language().classes.values() for p in (c.pattern or "", *c.words)]
     included = {name for c in language().classes.values() for name in c.includes}
-    used = {slot for text in texts for slot in SLOT.findall(text)} | included | classes_asked_for()
+    used = {name for text in texts for name in data.SLOT.findall(text)} | included | classes_asked_for()
     generators = {"model_suv", "model_pickup", "model_van", "model_truck", "model_motorcycle"}
     assert set(language().classes) - used - generators == set()
 
@@ -208,7 +208,7 @@ def test_rules_of_a_role_come_in_the_order_of_their_weight() -> None:
 def test_words_come_with_those_of_included_classes() -> None:
     assert set(words("cardinal")) < set(words("compass"))
     assert values("compass")["southeast"] == "SE"
-    assert slot("hand") == "(?:left|right)"
+    assert data.vocabulary().slot("hand") == "(?:left|right)"
 
 
 def test_given_words_are_no_patterns() -> None:

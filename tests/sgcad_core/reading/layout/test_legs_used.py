@@ -3,7 +3,7 @@
 import pytest
 
 from sgcad_core.reading.layout.legs_used import legs_used
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 
 SIDE = "The front of V1 struck the left side of V2."
 
@@ -25,7 +25,7 @@ SIDE = "The front of V1 struck the left side of V2."
     ("V1 left the road. V2 was traveling west on a parking lot driveway.", "E"),
 ])  # fmt: skip
 def test_legs_are_those_that_headings_and_turns_tell(text: str, legs: str) -> None:
-    assert set(legs_used(road_facts(f"{text} {SIDE}"))) == set(legs)
+    assert set(legs_used(read(f"{text} {SIDE}").roads)) == set(legs)
 
 
 @pytest.mark.parametrize(("text", "legs"), [
@@ -40,7 +40,7 @@ def test_legs_are_those_that_headings_and_turns_tell(text: str, legs: str) -> No
     ("V2 was leaving a driveway and turned left across the eastbound lanes.", ""),
 ])  # fmt: skip
 def test_a_side_that_was_struck_tells_where_a_turning_vehicle_came_from(text: str, legs: str) -> None:
-    assert set(legs_used(road_facts(f"{text} {SIDE}"), faced=True)) == set(legs)
+    assert set(legs_used(read(f"{text} {SIDE}").roads, faced=True)) == set(legs)
 
 
 @pytest.mark.parametrize(("text", "stated"), [
@@ -49,4 +49,4 @@ def test_a_side_that_was_struck_tells_where_a_turning_vehicle_came_from(text: st
     ("V1 was traveling east at the four-leg intersection.", False),
 ])  # fmt: skip
 def test_a_stem_is_stated_where_a_compass_word_says_it(text: str, stated: bool) -> None:
-    assert road_facts(f"{text} {SIDE}").junction.stem_stated is stated
+    assert read(f"{text} {SIDE}").roads.junction.stem_stated is stated

@@ -6,7 +6,7 @@ from lxml import etree
 
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 from tests.sgcad_core.reading.place_cases import assert_passes_what_roads_pass, written
 
 ACROSS = (
@@ -26,7 +26,7 @@ BARE = (
 
 @pytest.mark.parametrize(("text", "median"), [(ACROSS, "grass"), (WAITS, "raised"), (BARE, "raised")])
 def test_a_told_opening_is_no_junction_and_parts_a_median(text: str, median: str) -> None:
-    facts = road_facts(text)
+    facts = read(text).roads
     layout = layout_of_facts(facts)
     assert facts.junction.kind == "none"
     assert facts.junction.unsupported == ()
@@ -39,14 +39,14 @@ def test_an_opening_at_a_junction_is_named_and_not_drawn() -> None:
         "V1 was traveling north on a divided highway. V2 was traveling south, entered a median opening and turned left "
         "into a driveway on the east side. The front of V1 struck the right side of V2."
     )
-    facts = road_facts(text)
+    facts = read(text).roads
     assert facts.junction.unsupported == ("median_opening",)
     assert not layout_of_facts(facts).opening
 
 
 def test_who_only_crosses_the_median_needs_no_opening() -> None:
     text = "V1 was traveling north on a divided highway and crossed the grass median. The front of V1 struck V2."
-    assert road_facts(text).opening is None
+    assert read(text).roads.opening is None
 
 
 @pytest.mark.parametrize("text", [ACROSS, WAITS, BARE])

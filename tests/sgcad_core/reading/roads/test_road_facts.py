@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.reading.roads.road_facts import RoadFacts
 from sgcad_core.reading.text.compass import turned
 from sgcad_core.records.specs import RoadLayout
@@ -16,7 +16,7 @@ W = "V2, a 1999 Honda Civic, "
 
 
 def layout(text: str) -> RoadLayout:
-    return layout_of_facts(road_facts(text))
+    return layout_of_facts(read(text).roads)
 
 
 def legs(text: str) -> dict[str, tuple[int, int]]:
@@ -41,7 +41,7 @@ def test_two_roads_of_an_intersection_are_told_apart_by_axis() -> None:
 
 
 def _counts(text: str) -> dict[str, int | None]:
-    return {road.axis or "": road.lanes.total for road in road_facts(text).roads}
+    return {road.axis or "": road.lanes.total for road in read(text).roads.roads}
 
 
 def test_one_lane_of_travel_is_the_whole_of_a_one_way_street_alone() -> None:
@@ -65,7 +65,7 @@ def test_a_lane_that_is_crossed_or_blocked_is_no_width_of_a_street(more: str) ->
     ["stepped from between two parked cars on the east side of the street", "walked into the road from the right"],
 )
 def test_who_walks_across_makes_no_road(walker: str) -> None:
-    facts = road_facts(f"A pedestrian {walker} and was hit by the front of a northbound taxi.")
+    facts = read(f"A pedestrian {walker} and was hit by the front of a northbound taxi.").roads
     assert {v.id: v.heading for v in facts.crash.vehicles} == {"P1": "W", "V1": "N"}
     assert facts.junction.kind == "none"
     assert [road.axis for road in facts.roads] == ["N"]
@@ -146,7 +146,7 @@ def test_a_curve_is_seen_from_both_ends() -> None:
 
 
 def test_headings_that_no_one_tells_follow_the_road() -> None:
-    facts = road_facts("The crash occurred in the westbound lane of a two-lane road. V1 struck the rear of V2.")
+    facts = read("The crash occurred in the westbound lane of a two-lane road. V1 struck the rear of V2.").roads
     assert {v.heading for v in facts.crash.vehicles} == {"W"}
 
 
@@ -165,7 +165,7 @@ def test_headings_that_no_one_tells_follow_the_road() -> None:
     ("V1 was merging from the entrance ramp onto the southbound freeway. V2 was southbound.", "ramp", None),
 ])  # fmt: skip
 def test_the_junction_is_the_one_told_or_needed(text: str, kind: str, stem: str | None) -> None:
-    junction = road_facts(text).junction
+    junction = read(text).roads.junction
     assert junction.kind == kind
     assert stem is None or junction.stem == stem
 
@@ -183,7 +183,7 @@ def test_the_junction_is_the_one_told_or_needed(text: str, kind: str, stem: str 
     ("The traffic lights at the intersection were not functioning and it worked as a four-way stop.", "all_way_stop"),
 ])  # fmt: skip
 def test_only_what_controls_traffic_is_a_control(text: str, control: str) -> None:
-    assert road_facts(text + " V1 was traveling north and V2 was traveling west.").junction.control == control
+    assert read(text + " V1 was traveling north and V2 was traveling west.").roads.junction.control == control
 
 
 @pytest.mark.parametrize("sign", [
@@ -219,13 +219,13 @@ def test_a_ramp_joins_from_the_right_behind() -> None:
 
 
 def test_what_had_to_be_assumed_is_noted() -> None:
-    notes = road_facts("V1 struck V2 on a street.").notes
+    notes = read("V1 struck V2 on a street.").roads.notes
     assert any("lanes are not stated" in note for note in notes)
     assert any("no direction of travel" in note for note in notes)
 
 
 def test_defaults_stand_in_for_what_is_not_told() -> None:
-    found = layout_of_facts(road_facts("V1 struck V2 on a street."), Defaults(lanes_each_way=2, speed_limit_mph=30))
+    found = layout_of_facts(read("V1 struck V2 on a street.").roads, Defaults(lanes_each_way=2, speed_limit_mph=30))
     assert {(leg.lanes_in, leg.lanes_out, leg.speed_limit_mph) for leg in found.legs} == {(2, 2, 30)}
 
 
@@ -251,13 +251,13 @@ def check(facts: RoadFacts) -> None:
 @given(babble)
 @settings(max_examples=150, deadline=None)
 def test_any_crash_babble_gives_a_layout(text: str) -> None:
-    check(road_facts(text))
+    check(read(text).roads)
 
 
 @given(st.text(max_size=120))
 @settings(max_examples=60, deadline=None)
 def test_any_text_gives_a_layout(text: str) -> None:
-    check(road_facts(text))
+    check(read(text).roads)
 
 
 way = st.sampled_from(["north", "south", "east", "west"])
@@ -269,11 +269,11 @@ deeds = st.sampled_from(["turned left", "turned right", "went straight"])
 @given(way, way, st.sampled_from(["", "T-", "four-leg "]), deeds)
 @settings(max_examples=60, deadline=None)
 def test_every_vehicle_has_the_leg_it_comes_from(first: str, second: str, shape: str, deed: str) -> None:
-    facts = road_facts(
+    facts = read(
         f"V1 was traveling {first} on a two-lane road. "
         f"V2 was traveling {second} and approached the same {shape}intersection. "
         f"V2 {deed} and the front of V1 struck V2."
-    )
+    ).roads
     found = {leg.bearing: leg for leg in layout_of_facts(facts).legs}
     for v in facts.crash.vehicles:
         assert v.heading
@@ -287,7 +287,7 @@ def test_waiting_to_turn_into_a_side_road_needs_that_road() -> None:
 
 
 def test_a_quoted_t_is_a_shape() -> None:
-    assert road_facts("V1 was southbound at this 'T' intersection and was struck by V2.").junction.kind == "t"
+    assert read("V1 was southbound at this 'T' intersection and was struck by V2.").roads.junction.kind == "t"
 
 
 def test_a_turn_that_is_made_is_no_lane() -> None:
@@ -307,11 +307,11 @@ def test_a_turn_that_is_made_is_no_lane() -> None:
     ],
 )
 def test_a_freeway_is_the_road_of_whom_it_carries(told: str, kind: str) -> None:
-    assert road_facts(f"{told} and was sideswiped by a pickup in the right lane.").streets[0].kind == kind
+    assert read(f"{told} and was sideswiped by a pickup in the right lane.").roads.streets[0].kind == kind
 
 
 def test_two_whose_flanks_touch_on_a_ramp_s_road_drive_the_same_way() -> None:
-    facts = road_facts("While merging from the on-ramp onto the freeway, a truck sideswiped an SUV in the right lane.")
+    facts = read("While merging from the on-ramp onto the freeway, a truck sideswiped an SUV in the right lane.").roads
     (contact,) = facts.crash.contacts
     assert len({v.heading for v in facts.crash.vehicles}) == 1
     assert facts.crash.vehicles[0].origin == facts.junction.kind == "ramp"
@@ -325,8 +325,8 @@ def test_the_kind_of_road_stands_in_for_its_limit(road: str, mph: int | None) ->
 
 
 def test_the_lane_in_which_it_happened_tells_the_heading() -> None:
-    facts = road_facts("The crash occurred in the westbound lane of a two-lane road. V1 was stopped. V2 was behind V1 "
-                       "and the front of V2 struck the back of V1.")  # fmt: skip
+    facts = read("The crash occurred in the westbound lane of a two-lane road. V1 was stopped. V2 was behind V1 "
+                       "and the front of V2 struck the back of V1.").roads  # fmt: skip
     assert facts.crash.oriented
     assert [v.heading for v in facts.crash.vehicles] == ["W", "W"]
 
@@ -346,5 +346,5 @@ def test_a_center_turn_lane_that_is_turned_into_belongs_to_the_other_road() -> N
     "V1 was northbound on a two-lane road. There was one lane for left turns in each direction.",
 ])  # fmt: skip
 def test_turn_lanes_in_each_direction_belong_to_no_axis_of_their_own(text: str) -> None:
-    facts = road_facts(text)
+    facts = read(text).roads
     assert any("left" in turns for road in facts.roads for turns in road.lanes.turns.values())

@@ -2,7 +2,7 @@
 
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
-from sgcad_core.reading.reading import road_facts
+from sgcad_core.reading.reading import read
 from sgcad_core.reading.roads.told_roads import told_roads
 from sgcad_core.roads.layout import road_spec
 
@@ -11,7 +11,7 @@ TAIL = "V2 was traveling east on a crossing two-lane road. The front of V1 struc
 
 
 def told(text):
-    facts = road_facts(text)
+    facts = read(text).roads
     spec = road_spec(layout_of_facts(facts, Defaults(1, 35)))
     return told_roads(facts, spec), spec
 

@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 
 from sgcad_core.case.records import CrashReport
 from sgcad_core.reading.reading import read
-from sgcad_core.reading.second_reader.fuse_gist import decide, fused, model_right
-from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, alike, areas, meeting, rules_say
+from sgcad_core.reading.second_reader.fuse_gist import decide, fused_with_gist, model_right
+from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, alike, areas, meeting, rule_values
 from sgcad_core.records.second_reader import Heard, Opinion, Weights
 
 TEXT = (
@@ -25,16 +25,16 @@ def opinion(weights: dict[str, Weights] | None = None, p: float = 0.99, **values
 def test_a_sure_model_is_believed_where_both_differ_and_an_unsure_one_is_not() -> None:
     reading = read(TEXT)
     assert reading.crash.unnumbered
-    told = fused(reading, opinion(subject="backing"))
+    told = fused_with_gist(reading, opinion(subject="backing"))
     assert told.crash.vehicles[0].maneuver == "backing"
-    assert fused(reading, opinion(p=0.3, subject="backing")) is reading
+    assert fused_with_gist(reading, opinion(p=0.3, subject="backing")) is reading
     stubborn = {"subject": Weights(told=-9.0)}
-    assert fused(reading, opinion(stubborn, subject="backing")) is reading
+    assert fused_with_gist(reading, opinion(stubborn, subject="backing")) is reading
 
 
 def test_each_change_is_a_fact_of_the_model() -> None:
     reading = read(TEXT)
-    told = fused(reading, opinion(other_area="left", subject="turn_left"))
+    told = fused_with_gist(reading, opinion(other_area="left", subject="turn_left"))
     added = told.facts[len(reading.facts) :]
     assert {(f.field, f.value, f.basis) for f in added} == {
         ("gist.subject", "turn_left", "model"),
@@ -48,24 +48,24 @@ def test_each_change_is_a_fact_of_the_model() -> None:
 
 def test_a_near_crash_and_a_contact_turn_into_each_other() -> None:
     reading = read(TEXT)
-    near = fused(reading, opinion(touched=False))
+    near = fused_with_gist(reading, opinion(touched=False))
     assert near.crash.near_crash is not None
     assert near.crash.contacts
-    assert fused(near, opinion(touched=True)).crash.near_crash is None
+    assert fused_with_gist(near, opinion(touched=True)).crash.near_crash is None
 
 
 def test_a_junction_that_the_rules_miss_is_added() -> None:
     text = TEXT.replace("at a red light ", "")
     assert read(text).roads.junction.kind == "none"
-    assert fused(read(text), opinion(junction=True)).roads.junction.kind == "four_leg"
-    assert fused(read(text), opinion(junction=False)).roads.junction.kind == "none"
+    assert fused_with_gist(read(text), opinion(junction=True)).roads.junction.kind == "four_leg"
+    assert fused_with_gist(read(text), opinion(junction=False)).roads.junction.kind == "none"
 
 
 def test_numbered_reports_and_missing_weights_are_the_rules() -> None:
     reading = read(NUMBERED)
-    assert fused(reading, opinion(subject="backing")) is reading
+    assert fused_with_gist(reading, opinion(subject="backing")) is reading
     mine = read(TEXT)
-    assert fused(mine, Opinion(heard={"subject": Heard(value="backing", p=1.0)})) is mine
+    assert fused_with_gist(mine, Opinion(heard={"subject": Heard(value="backing", p=1.0)})) is mine
 
 
 def test_a_contact_that_the_rules_cannot_read_is_filled_in_by_a_sure_model_alone() -> None:
@@ -78,14 +78,14 @@ def test_a_contact_that_the_rules_cannot_read_is_filled_in_by_a_sure_model_alone
     assert meeting(reading.crash) is None
     assert reading.crash.gap
     assert reading.crash.gap.unread
-    told = fused(reading, opinion(**whole)).crash
+    told = fused_with_gist(reading, opinion(**whole)).crash
     assert told.gap is None
     assert (told.contacts[0].striker, told.contacts[0].struck) == ("V2", "V1")
-    assert fused(reading, opinion(p=0.55, **whole)).crash.gap
+    assert fused_with_gist(reading, opinion(p=0.55, **whole)).crash.gap
 
 
 def test_what_both_say_alike_is_the_rules_value_with_the_share_of_agreement() -> None:
-    say = rules_say(read(TEXT))
+    say = rule_values(read(TEXT))
     found = decide(opinion({"subject": Weights(agree=0.97)}, subject="parked"), say)["subject"]
     assert (found.value, found.p, found.changed) == ("stopped", 0.97, False)
     assert alike("straight", "slowing")
@@ -111,7 +111,7 @@ def test_a_report_is_read_with_its_opinion() -> None:
 @pytest.mark.parametrize("values", [{"met": "pedestrian"}, {"subject": "other"}])
 def test_what_cannot_be_taken_over_leaves_the_reading(values: dict[str, str]) -> None:
     reading = read(TEXT)
-    assert fused(reading, opinion(**values)) is reading
+    assert fused_with_gist(reading, opinion(**values)) is reading
 
 
 def test_what_the_report_makes_likelier_is_believed_the_more_up_to_a_bound() -> None:

@@ -10,10 +10,9 @@ from sgcad_core.case.records import CrashReport
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.reading import Reading, read
-from sgcad_core.reading.second_reader.answered_claims import model_claims
-from sgcad_core.reading.second_reader.answered_facts import Taken, facts_of
+from sgcad_core.reading.second_reader.answered_values import TakenValue, facts_of, model_claims
 from sgcad_core.reading.second_reader.field_claims import KINDS, UNKNOWN_P, Claim, rules_claim
-from sgcad_core.reading.second_reader.fuse_whole import SURE, agree, decided, same, whole
+from sgcad_core.reading.second_reader.fuse_whole import SURE, agree, decided, fused_with_answer, same
 from sgcad_core.records.second_reader import Answered, Opinion, Weights
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
@@ -49,12 +48,12 @@ def answered(layout: RoadLayout = ROAD, p: dict[str, float] | None = None, **v1:
 
 
 def told(text: str, said: Answered, weights: dict[str, Weights] = BELIEVED) -> Reading:
-    return whole(read(text), Opinion(answered=said, weights=weights))
+    return fused_with_answer(read(text), Opinion(answered=said, weights=weights))
 
 
 def test_where_both_agree_nothing_changes() -> None:
     reading = read(TEXT)
-    assert whole(reading, Opinion(answered=answered(), weights=BELIEVED)) is reading
+    assert fused_with_answer(reading, Opinion(answered=answered(), weights=BELIEVED)) is reading
 
 
 def test_a_believed_value_is_taken_and_is_a_fact_of_the_model() -> None:
@@ -86,8 +85,10 @@ def test_a_taken_value_is_a_guess_unless_the_evidence_tells_it(share: float, sta
 def test_a_value_that_is_not_believed_is_left() -> None:
     reading = read(TEXT)
     said = answered(maneuver="turn_left", kind="bus")
-    assert whole(reading, Opinion(answered=said, weights=UNHEARD)) is reading
-    assert whole(reading, Opinion(answered=said, weights={})) is reading, "kinds without weights are the rules'"
+    assert fused_with_answer(reading, Opinion(answered=said, weights=UNHEARD)) is reading
+    assert fused_with_answer(reading, Opinion(answered=said, weights={})) is reading, (
+        "kinds without weights are the rules'"
+    )
 
 
 def test_what_the_text_tells_outright_weighs() -> None:
@@ -102,7 +103,7 @@ def test_what_the_text_tells_outright_weighs() -> None:
 def test_lane_and_way_out_of_a_vehicle_on_another_way_are_not_taken() -> None:
     said = answered(lane=1, exit_road="S", road="N")  # the model has V1 come from the north
     believed = {kind: BELIEVED[kind] for kind in ("lane", "exit")}
-    assert whole(read(TEXT), Opinion(answered=said, weights=believed)) == read(TEXT)
+    assert fused_with_answer(read(TEXT), Opinion(answered=said, weights=believed)) == read(TEXT)
     with_heading = told(TEXT, said, believed | {"heading": BELIEVED["heading"]}).crash.vehicle("V1")
     assert with_heading is not None
     assert (with_heading.heading, with_heading.exit_heading) == ("S", "S")
@@ -120,7 +121,7 @@ def test_taken_values_are_facts_by_the_names_of_the_rules() -> None:
 
 def test_facts_of_a_contact_name_who_and_with_which_side() -> None:
     crash = read(TEXT).crash
-    one = partial(Taken, p=0.9, told=0.9, nats=1.0)
+    one = partial(TakenValue, p=0.9, told=0.9, nats=1.0)
     found = [*facts_of("contact", one(("V2", "V1")), crash), *facts_of("areas", one((("V1", "left"),)), crash)]
     assert [(fact.field, fact.value) for fact in found] == [
         ("contacts.0.striker", "V2"), ("contacts.0.struck", "V1"), ("contacts.0.striker_area", "left"),
@@ -290,7 +291,10 @@ def test_what_the_evidence_tells_by_the_models_own_head_weighs() -> None:
 def test_places_that_the_model_has_not_learned_stay_as_told(place: str) -> None:
     reading = read(f"The crash occurred in {place}. {TEXT}")
     tee = legs(*ROAD.legs, Leg(bearing="E", lanes_in=2, lanes_out=1))
-    assert whole(reading, Opinion(answered=answered(tee), weights=BELIEVED)).roads.junction == reading.roads.junction
+    assert (
+        fused_with_answer(reading, Opinion(answered=answered(tee), weights=BELIEVED)).roads.junction
+        == reading.roads.junction
+    )
 
 
 def test_another_first_contact_comes_first() -> None:
@@ -313,7 +317,10 @@ def test_a_contact_of_strangers_is_not_taken() -> None:
         update={"contacts": (Contact(striker="V8", struck="V9", striker_area="front", struck_area="left"),)}
     )
     reading = read(TEXT)
-    assert whole(reading, Opinion(answered=Answered(layout=ROAD, behavior=behavior), weights=BELIEVED)) is reading
+    assert (
+        fused_with_answer(reading, Opinion(answered=Answered(layout=ROAD, behavior=behavior), weights=BELIEVED))
+        is reading
+    )
 
 
 def test_a_crash_that_the_rules_cannot_read_is_the_models_if_that_is_sure() -> None:
@@ -343,7 +350,7 @@ def test_no_gap_is_filled_where_no_crash_is_told() -> None:
 def test_unnumbered_reports_are_left_to_the_rules() -> None:
     reading = read("The AV was stopped when an SUV struck its rear bumper.")
     assert reading.crash.unnumbered
-    assert whole(reading, Opinion(answered=answered(), weights=BELIEVED)) is reading
+    assert fused_with_answer(reading, Opinion(answered=answered(), weights=BELIEVED)) is reading
 
 
 def test_a_report_is_read_with_its_opinion() -> None:
@@ -354,14 +361,14 @@ def test_a_report_is_read_with_its_opinion() -> None:
 
 
 def test_a_person_wins_over_the_model() -> None:
-    from sgcad_core.reading.reading_with_edits import mended
+    from sgcad_core.reading.reading_with_edits import with_edits
     from sgcad_core.records.edits import Edit
 
     tee = legs(*ROAD.legs, Leg(bearing="E", lanes_in=2, lanes_out=1))
     found = told(TEXT, answered(tee, kind="bus"))
     assert found.roads.junction.kind == "t"
     said = [Edit(field="junction.kind", value="none"), Edit(field="vehicles.V1.kind", value="van")]
-    mine = mended(found, said)
+    mine = with_edits(found, said)
     one = mine.crash.vehicle("V1")
     assert one is not None
     assert one.kind == "van"

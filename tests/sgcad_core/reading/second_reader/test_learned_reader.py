@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from sgcad_core.errors import ConfigError
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.second_reader import learned_reader
-from sgcad_core.reading.second_reader.fuse_gist import decide, fused
+from sgcad_core.reading.second_reader.fuse_gist import decide, fused_with_gist
 from sgcad_core.reading.second_reader.learned_reader import Field, Learned, contest, hashed, known
 from sgcad_core.reading.second_reader.learned_reader_features import account_of, readings, runs, words
-from sgcad_core.reading.second_reader.seven_question_gist import rules_say, shown_alike
+from sgcad_core.reading.second_reader.seven_question_gist import rule_values, shown_alike
 from sgcad_core.records.second_reader import WEIGHTS
 
 TEXT = (
@@ -57,12 +57,12 @@ def test_a_sure_reader_wins_and_an_unsure_one_tells_how_sure_the_rules_are() -> 
     said = learned_reader.opinion(TEXT, made(TEXT))
     assert said is not None
     assert said.heard["subject"].value == "backing"
-    assert fused(reading, said).crash.vehicles[0].maneuver == "backing"
+    assert fused_with_gist(reading, said).crash.vehicles[0].maneuver == "backing"
     unsure = learned_reader.opinion(TEXT, made(TEXT, takes=0.99))
     assert unsure is not None
     assert unsure.heard["subject"].value == "stopped"
-    assert fused(reading, unsure) is reading
-    decided = decide(unsure, rules_say(reading))["subject"]
+    assert fused_with_gist(reading, unsure) is reading
+    decided = decide(unsure, rule_values(reading))["subject"]
     assert (decided.p, decided.changed) == (unsure.heard["subject"].p, False)
     assert decided.p < 0.5
 

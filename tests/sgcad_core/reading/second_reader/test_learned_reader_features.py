@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
-from sgcad_core.reading.reading import crash_facts, road_facts
+from sgcad_core.reading.reading import read
 
 SCENE = (
     "V1, a 2002 Ford Taurus, was traveling north on a two-lane road and was approaching an intersection. V2, a 1999 "
@@ -53,45 +53,45 @@ MANEUVERS = (
 
 @pytest.mark.parametrize(("told", "front", "side"), CONTACTS)
 def test_a_contact_has_many_wordings(told: str, front: str, side: str) -> None:
-    first = crash_facts(SCENE + told).contacts[0]
+    first = read(SCENE + told).crash.contacts[0]
     assert {first.striker: first.striker_area, first.struck: first.struck_area} == {"V1": front, "V2": side}
     assert first.stated
 
 
 def test_an_object_may_be_the_subject_of_the_blow() -> None:
-    facts = crash_facts("V1 was traveling north and left the road. A large tree was hit by the front end of V1.")
+    facts = read("V1 was traveling north and left the road. A large tree was hit by the front end of V1.").crash
     assert [o.word for o in facts.others] == ["tree"]
 
 
 @pytest.mark.parametrize(("told", "want"), CONDITIONS)
 def test_conditions_have_many_wordings(told: str, want: tuple[str | None, str | None, str | None]) -> None:
-    facts = crash_facts(SCENE + told)
+    facts = read(SCENE + told).crash
     assert (facts.light, facts.weather) == want[:2]
     assert want[2] is None or facts.surface == want[2]
 
 
 @pytest.mark.parametrize(("told", "want"), MANEUVERS)
 def test_a_maneuver_has_many_wordings(told: str, want: str) -> None:
-    vehicle = crash_facts("V1 was traveling north. V2 was on the same road. " + told).vehicle("V1")
+    vehicle = read("V1 was traveling north. V2 was on the same road. " + told).crash.vehicle("V1")
     assert vehicle is not None
     assert vehicle.maneuver == want
 
 
 def test_lanes_listed_for_both_roads_stay_with_their_legs() -> None:
-    facts = road_facts(
+    facts = read(
         "The crash occurred at the four-leg intersection of a north/south street (two northbound lanes, two southbound "
         "lanes) with a five-lane east/west street (one westbound left-turn lane, one westbound lane, one eastbound "
         "left-turn lane, one eastbound through-lane, one eastbound right-turn lane). V1 was traveling north. V2 was "
         "traveling west."
-    )
+    ).roads
     lanes = {leg.bearing: (leg.lanes_in, leg.lanes_out) for leg in layout_of_facts(facts).legs}
     assert lanes == {"S": (2, 2), "N": (2, 2), "E": (2, 1), "W": (3, 1)}
 
 
 def test_lanes_and_a_turn_lane_in_each_direction_are_told_for_both() -> None:
-    facts = road_facts(
+    facts = read(
         "V1 was traveling north on a road with two through lanes and a left turn lane in each direction."
-    )
+    ).roads
     assert facts.roads[0].lanes.each_way == 2
     assert facts.roads[0].lanes.turns["each"] == ("left",)
 
@@ -103,13 +103,13 @@ _CLAUSES = sorted({part for told in _SENTENCES for part in told.split(" ")} | se
 @settings(max_examples=40, deadline=None)
 @given(st.lists(st.sampled_from(_CLAUSES), max_size=60))
 def test_any_shuffle_of_clauses_is_read_without_a_fault(clauses: list[str]) -> None:
-    layout_of_facts(road_facts(SCENE + " ".join(clauses)))
+    layout_of_facts(read(SCENE + " ".join(clauses)).roads)
 
 
 def test_a_long_report_costs_a_fraction_of_a_second() -> None:
     report = SCENE + " ".join(_SENTENCES * 3)
     started = time.process_time()
-    road_facts(report)
+    read(report)
     assert time.process_time() - started < 5.0
 
 
@@ -119,7 +119,7 @@ def test_a_long_report_costs_a_fraction_of_a_second() -> None:
     "V2 stopped facing northwest.",
 ])  # fmt: skip
 def test_a_way_that_ends_behind_the_impact_is_no_stop_before_it(end: str) -> None:
-    vehicle = crash_facts(f"{SCENE}The front of V1 struck the left side of V2. {end}").vehicle("V2")
+    vehicle = read(f"{SCENE}The front of V1 struck the left side of V2. {end}").crash.vehicle("V2")
     assert vehicle is not None
     assert (vehicle.heading, vehicle.maneuver) == ("E", "straight")
 
@@ -128,17 +128,17 @@ def test_a_way_that_ends_behind_the_impact_is_no_stop_before_it(end: str) -> Non
     ("V2 pulled up to the crossing and stopped.", "stopped"), ("V2 stopped, then was crossing.", "straight"),
 ])  # fmt: skip
 def test_a_crossing_that_one_comes_to_is_no_movement(told: str, maneuver: str) -> None:
-    facts = crash_facts(f"{SCENE}{told} The front of V1 struck the left side of V2.")
+    facts = read(f"{SCENE}{told} The front of V1 struck the left side of V2.").crash
     assert facts.vehicles[1].maneuver == maneuver
 
 
 def test_a_stop_that_is_told_before_the_impact_stays_one() -> None:
     text = f"{SCENE}V2 came up to a line of cars and stopped. The front of V1 struck the left side of V2."
-    vehicle = crash_facts(text).vehicle("V2")
+    vehicle = read(text).crash.vehicle("V2")
     assert vehicle is not None
     assert vehicle.maneuver == "stopped"
 
 
 def test_a_vehicle_that_was_thrown_and_stopped_did_not_stop_before_an_impact_that_nobody_told() -> None:
-    facts = crash_facts(SCENE + "Both vehicles bounced apart and stopped off the road.")
+    facts = read(SCENE + "Both vehicles bounced apart and stopped off the road.").crash
     assert [v.maneuver for v in facts.vehicles] == ["straight", "straight"]

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from sgcad_core.reading.text.normalise import normalised
 from sgcad_core.reading.text.privacy import redacted
-from sgcad_core.reading.text.traced_text import Traced, joined, placed, runs
+from sgcad_core.reading.text.traced_text import TracedText, joined, placed, runs
 
 EDITS = [
     (r"b", "xyz"), (r"(a)(b)", r"\2\1"), (r"a+", ""), (r"\s+", " "), (r"$", "!"), (r"^", ">"), (r"(a)|(b)", r"<\1>"),
@@ -20,7 +20,7 @@ LETTERS = st.text(alphabet="ab c", max_size=20)
 @given(LETTERS, st.lists(st.sampled_from(EDITS), max_size=5))
 @settings(deadline=None)
 def test_edits_give_what_re_gives_and_places_stay_in_order_and_inside(text, edits):
-    traced, plain = Traced.of(text), text
+    traced, plain = TracedText.of(text), text
     for pattern, to in edits:
         traced, plain = traced.sub(re.compile(pattern), to), re.sub(pattern, to, plain)
     assert traced.text == plain
@@ -30,24 +30,24 @@ def test_edits_give_what_re_gives_and_places_stay_in_order_and_inside(text, edit
     assert all(0 <= a <= b <= len(text) for a, b in zip(traced.starts, traced.ends, strict=True))
 
 
-def _lists(text: Traced) -> tuple[str, list[int], list[int]]:
+def _lists(text: TracedText) -> tuple[str, list[int], list[int]]:
     return text.text, list(text.starts), list(text.ends)
 
 
 @given(LETTERS)
 @settings(deadline=None)
 def test_splitting_and_joining_gives_what_strings_give(text):
-    parts = Traced.of(text).split(re.compile(" "))
+    parts = TracedText.of(text).split(re.compile(" "))
     assert [p.text for p in parts] == text.split(" ")
     assert joined(parts, " ").text == text
-    assert not all(p.text for p in parts) or _lists(joined(parts, " ")) == _lists(Traced.of(text))
+    assert not all(p.text for p in parts) or _lists(joined(parts, " ")) == _lists(TracedText.of(text))
     assert joined(parts, "--").text == "--".join(text.split(" "))
-    assert Traced.of(text).strip().text == text.strip()
-    assert Traced.of(text).strip("a ").text == text.strip("a ")
+    assert TracedText.of(text).strip().text == text.strip()
+    assert TracedText.of(text).strip("a ").text == text.strip("a ")
 
 
 def test_what_is_put_in_between_swapped_letters_keeps_the_order_of_places():
-    swapped, swap = Traced.of("aabb"), re.compile("(a)(b)")
+    swapped, swap = TracedText.of("aabb"), re.compile("(a)(b)")
     for _ in range(2):
         swapped = swapped.sub(swap, r"\2\1")
     put_in = swapped.sub(re.compile("(?<=a)(?=b)"), "-")
@@ -56,14 +56,14 @@ def test_what_is_put_in_between_swapped_letters_keeps_the_order_of_places():
 
 
 def test_only_what_changes_of_a_match_loses_its_place():
-    edited = Traced.of("at 30mph.").sub(re.compile(r"(\d+)(mph)"), r"\1 \2")
+    edited = TracedText.of("at 30mph.").sub(re.compile(r"(\d+)(mph)"), r"\1 \2")
     assert edited.text == "at 30 mph."
     assert (edited.starts[6:], edited.ends[6:]) == ([5, 6, 7, 8], [6, 7, 8, 9])
     assert (edited.starts[5], edited.ends[5]) == (5, 5)
 
 
 def test_at_most_so_many_matches_are_replaced():
-    assert Traced.of("aaa").sub(re.compile("a"), "b", 2).text == "bba"
+    assert TracedText.of("aaa").sub(re.compile("a"), "b", 2).text == "bba"
 
 
 @pytest.mark.parametrize(
@@ -77,7 +77,7 @@ def test_at_most_so_many_matches_are_replaced():
     ],
 )
 def test_what_normalising_rewrites_keeps_its_place(written, piece, original):
-    text = normalised(Traced.of(written))
+    text = normalised(TracedText.of(written))
     at = text.text.index(piece)
     start, end = text.cut(at, at + len(piece)).span
     assert written[start:end] == original
@@ -86,7 +86,7 @@ def test_what_normalising_rewrites_keeps_its_place(written, piece, original):
 @given(st.text(alphabet="Vehicle #12.,()’\n he was struck 45-year-old male driver", max_size=120))
 @settings(deadline=None, max_examples=200)
 def test_runs_bring_places_back_and_none_beyond_its_edit(text):
-    edited = normalised(redacted(Traced.of(text)))
+    edited = normalised(redacted(TracedText.of(text)))
     back = placed(edited.text, runs(edited))
     assert back.text == edited.text
     pairs = zip(back.starts, back.ends, edited.starts, edited.ends, strict=True)
@@ -94,5 +94,5 @@ def test_runs_bring_places_back_and_none_beyond_its_edit(text):
 
 
 def test_an_untouched_text_has_no_runs_and_a_shortened_one_has():
-    assert runs(Traced.of("abc")) == ()
-    assert runs(Traced.of("abc").cut(1, 3)) == ((0, 1, 3),)
+    assert runs(TracedText.of("abc")) == ()
+    assert runs(TracedText.of("abc").cut(1, 3)) == ((0, 1, 3),)

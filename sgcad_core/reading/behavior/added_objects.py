@@ -1,17 +1,18 @@
-"""What vehicles strike after they met: things beside the road and people who stand there join a behavior as actors.
+"""Actors added to a behavior after the first contact: objects and people beside the road, and vehicles in a gore.
 
-Ids are those of the crash's others where the same thing is among them. Knows facts and actors, no network.
+Ids are those of the crash's others where the same object is among them. Knows facts, actors and roads; no text.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
-from sgcad_core.kinds import actor_kind, kind_of_letter
-from sgcad_core.reading.actors.pedestrians_objects import OtherFacts
+from sgcad_core.kinds import RAMP, actor_kind, kind_of_letter
+from sgcad_core.reading.actors.people_objects import OtherFacts
 from sgcad_core.reading.crash_facts import CrashFacts
+from sgcad_core.reading.layout.road_ways import Way, exits, turn_of, ways_of
 from sgcad_core.records.course import ImpactTold
-from sgcad_core.records.specs import Actor, ActorKind, Contact
+from sgcad_core.records.specs import Actor, ActorKind, Contact, RoadSpec
 
 _SIZE_M: dict[str, tuple[float, float]] = {
     "pole": (0.4, 0.4), "tree": (0.5, 0.5), "post": (0.3, 0.3), "sign": (0.3, 0.8), "signal": (0.4, 0.4),
@@ -86,3 +87,37 @@ def _standing(other: OtherFacts, driver: Actor) -> Actor:
         id=other.id, kind=kind, road=driver.road, direction=driver.direction, maneuver="stopped",
         length_m=size[0], width_m=size[1],
     )  # fmt: skip
+
+
+def in_gore(
+    actors: Sequence[Actor], contacts: Sequence[Contact], gore: Mapping[str, str], spec: RoadSpec
+) -> list[Actor]:
+    """The actors with those of `gore` (vehicle -> `places.InGore`) put into the gore of the spec's first ramp."""
+    ways = ways_of(spec)
+    ramp = next((w for w in ways if w.road.kind == RAMP), None)
+    if not gore or ramp is None:
+        return list(actors)
+    things = {c.struck for c in contacts[:1] if gore.get(c.striker) == "strikes"}
+    found = []
+    for actor in actors:
+        how = gore.get(actor.id)
+        if how in ("crosses", "leaves"):
+            actor = actor.model_copy(update=_across(ramp, ways, how))
+        thing = actor.id in things and actor.record.thing
+        if how in ("crosses", "leaves", "stands") or thing:
+            actor = actor.model_copy(update={"gore": True})
+        found.append(actor)
+    return found
+
+
+def _across(ramp: Way, ways: Sequence[Way], how: str) -> dict[str, object]:
+    """Start and exit road of a vehicle that crosses the gore of a ramp."""
+    into = [w for w in ways if any(e is ramp for e in exits(w, ways)) and w.road.kind != RAMP]
+    came = min(into, key=lambda w: abs(turn_of(w, ramp)), default=None)
+    if came is None:
+        onward = min(exits(ramp, ways), key=lambda w: abs(turn_of(ramp, w)), default=None)
+        return {} if onward is None else {"exit_road": onward.road.id}
+    on = [w for w in exits(came, ways) if w.road.kind != RAMP]
+    ahead = min(on, key=lambda w: abs(turn_of(came, w)), default=None)
+    goes = ramp if how == "leaves" or ahead is None else ahead
+    return {"road": came.road.id, "direction": came.direction, "exit_road": goes.road.id, "maneuver": "straight"}

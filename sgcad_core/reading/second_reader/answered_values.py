@@ -24,11 +24,21 @@ from sgcad_core.records.specs import Compass, Leg
 if TYPE_CHECKING:
     from sgcad_core.records.second_reader import Answered
     from sgcad_core.records.specs import Actor, BehaviorSpec
+from collections import Counter
+from collections.abc import Sequence
+
+from sgcad_core.reading.second_reader.fuse_gist import model_fact
+
+if TYPE_CHECKING:
+    from sgcad_core.reading.crash_facts import CrashFacts
+    from sgcad_core.reading.junctions.control import Control
+    from sgcad_core.records.facts import Fact, Value
+    from sgcad_core.records.specs import Compass
 
 
 def model_claims(said: Answered) -> Claims:
-    """What a model's answers say, each value with probability and grounding. What is null in them is no claim."""
-    sure = _Sure(said.p, said.nats, said.told)
+    """What a model's answers say, each value with probability and grounding. A null in them is no claim."""
+    sure = _Certainty(said.p, said.nats, said.told)
     found: Claims = {}
     for i, actor in enumerate(said.behavior.actors):
         at = f"crash.actors[{i}]"
@@ -42,7 +52,7 @@ def model_claims(said: Answered) -> Claims:
     return found | dict(_answered_roads(said.layout.legs, sure))
 
 
-class _Sure(NamedTuple):
+class _Certainty(NamedTuple):
     """Probability and grounding of every value by its path."""
 
     p: Mapping[str, float]
@@ -76,19 +86,19 @@ def _actor(actor: Actor) -> Iterator[tuple[str, str, Any]]:
 
 
 def _edges_of(actor: Actor, legs: tuple[Leg, ...]) -> tuple[str, ...]:
-    """On which edge of its approach a vehicle drives."""
+    """Edges of its approach on which a vehicle drives."""
     bearing = actor.road.removesuffix("_outer")
     lanes = next((leg.lanes_in for leg in legs if leg.bearing == bearing), 0)
     return ("right",) * (actor.lane == 1) + ("left",) * (actor.lane == lanes)
 
 
 def _heading(road: str) -> Compass | None:
-    """Where one drives who comes in on a leg ("N") or on its outer piece ("N_outer")."""
+    """Heading of a vehicle that comes in on a leg ("N") or on its outer piece ("N_outer")."""
     bearing = road.removesuffix("_outer")
     return turned(bearing, 180) if bearing in COMPASS else None
 
 
-def _met(behavior: BehaviorSpec, sure: _Sure) -> Iterator[tuple[str, Claim]]:
+def _met(behavior: BehaviorSpec, sure: _Certainty) -> Iterator[tuple[str, Claim]]:
     if not behavior.contacts:
         return
     first, at = behavior.contacts[0], "crash.contacts[0]"
@@ -97,7 +107,7 @@ def _met(behavior: BehaviorSpec, sure: _Sure) -> Iterator[tuple[str, Claim]]:
     yield "areas", sure.claim(sides, f"{at}.striker_area", f"{at}.struck_area", joint=True)
 
 
-def _answered_roads(legs: tuple[Leg, ...], sure: _Sure) -> Iterator[tuple[str, Claim]]:
+def _answered_roads(legs: tuple[Leg, ...], sure: _Certainty) -> Iterator[tuple[str, Claim]]:
     at = {leg.bearing: f"road.legs[{i}]" for i, leg in enumerate(legs)}
 
     def claim(value: Any, some: Iterable[Leg], *names: str) -> Claim:
@@ -115,3 +125,73 @@ def _answered_roads(legs: tuple[Leg, ...], sure: _Sure) -> Iterator[tuple[str, C
         if (limit := some[0].speed_limit_mph) is not None:
             yield f"limit.{axis}", claim(limit, some[:1], "speed_limit_mph")
     yield "control", claim(control_of(legs), legs, "control")
+
+
+_OF_VEHICLES = {
+    "kind": "kind", "heading": "heading", "maneuver": "maneuver", "exit": "exit_heading", "lane": "lane",
+    "speed": "speed_mph",
+}  # fmt: skip
+
+
+class TakenValue(NamedTuple):
+    """A value of the model's that is taken, how likely it is right, and what the model says of the evidence for it."""
+
+    value: Any
+    p: float
+    told: float
+    nats: float
+
+
+def as_taken(said: Claim, p: float) -> TakenValue:
+    """A claim that is right with this probability."""
+    return TakenValue(said.value, p, said.told, said.nats)
+
+
+def controlled(legs: Sequence[tuple[Compass, Control]]) -> tuple[Control, tuple[Compass, ...]]:
+    """A junction's control and the legs that it stops, of what controls each leg that is controlled."""
+    if not legs:
+        return "none", ()
+    kind = Counter(kind for _, kind in legs).most_common(1)[0][0]
+    return kind, tuple(leg for leg, _ in legs) if kind in ("stop", "yield") else ()
+
+
+def facts_of(key: str, one: TakenValue, crash: CrashFacts) -> Iterator[Fact]:
+    """The facts of a taken value (`sgcad_core.reading.second_reader.field_claims` names it); `crash`: with all that is
+    taken."""
+    name, _, of = key.partition(".")
+    for field, value in _named(name, of, one.value, crash):
+        yield model_fact(field, value, one.p, told=one.told >= UNKNOWN_P, nats=one.nats)
+
+
+def _named(name: str, of: str, value: Any, crash: CrashFacts) -> Iterator[tuple[str, Value]]:
+    if name in _OF_VEHICLES:
+        yield f"vehicles.{of}.{_OF_VEHICLES[name]}", value
+    elif name in ("light", "weather", "surface"):
+        yield f"conditions.{name}", value
+    elif name == "contact":
+        yield from zip(("contacts.0.striker", "contacts.0.struck"), value, strict=True)
+    elif name == "areas":
+        sides = dict(value)
+        roles = {"striker": crash.contacts[0].striker, "struck": crash.contacts[0].struck} if crash.contacts else {}
+        yield from ((f"contacts.0.{role}_area", sides[id]) for role, id in roles.items() if id in sides)
+    else:
+        yield from _of_roads(name, of, value)
+
+
+def _of_roads(name: str, of: str, value: Any) -> Iterator[tuple[str, Value]]:
+    if name == "legs":
+        yield "junction.legs", value
+    elif name == "control":
+        kind, stopped = controlled(value)
+        yield "junction.control", kind
+        if stopped:
+            yield "junction.stopped", stopped
+    elif name == "lanes":
+        for leg, toward, away in value:
+            yield f"roads.{leg}.lanes_forward", toward
+            yield f"roads.{leg}.lanes_backward", away
+    elif name in ("turns", "curve"):
+        field = {"turns": "turn_lanes", "curve": "curve"}[name]
+        yield from ((f"roads.{leg}.{field}", found) for leg, found in value or ((of, "none"),))
+    else:
+        yield f"roads.{of}.{'speed_limit_mph' if name == 'limit' else name}", value

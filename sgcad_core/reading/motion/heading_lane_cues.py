@@ -1,0 +1,187 @@
+"""Which way a vehicle was heading, and to where it turned. Compass words only; knows no road."""
+
+from __future__ import annotations
+
+import re
+
+from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
+from sgcad_core.reading.actors.vehicles import Roster
+from sgcad_core.reading.language import of_role, rule, values
+from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
+from sgcad_core.reading.text.compass import compass_of, turned
+from sgcad_core.reading.text.normalise import NUMBERS
+from sgcad_core.records.specs import Compass
+
+_FROM = rule("headings.from")
+_CAME_WAY = rule("headings.came_way")
+_EXIT = rule("headings.exit")
+_TURN_BEFORE = rule("headings.turn_before")
+_WAYS = ("dir", "dir2", "dir3", "dir4")
+"""Groups of the way in alternatives of a rule."""
+
+
+def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
+    """Adds the headings and exits of a segment."""
+    told = [(m, by) for by in (rule("headings.heading"), rule("headings.heading_bare")) for m in by.finditer(text)]
+    for m, by in sorted(told, key=lambda found: found[0].start()):
+        words = m.groupdict()
+        gap = words.get("gap") or words.get("gap2") or ""
+        if not rule("headings.gap_stops").search(gap) and not _TURN_BEFORE.search(text[: m.start()]):
+            _note_heading(motion, next(filter(None, map(words.get, _WAYS)), ""), weight, by.id)
+            if way := compass_of(words.get("dir") or ""):
+                _note_sense(motion, m, way)
+    for m in _CAME_WAY.finditer(text):
+        if not _TURN_BEFORE.search(text[: m.start()]) and not rule("headings.came_way_not").search(text[: m.start()]):
+            _note_heading(motion, m.group("dir"), weight, _CAME_WAY.id)
+    for by in (
+        rule("headings.from_bound"),
+        rule("headings.bound_aside"),
+        rule("headings.following"),
+        rule("headings.on_course"),
+    ):
+        for m in by.finditer(text):
+            _note_heading(motion, m.group("dir"), weight, by.id)
+    for m in _FROM.finditer(text):
+        _note_origin(motion, text, m, weight, _FROM.id)
+    for m in rule("headings.from_to").finditer(text):
+        _note_origin(motion, text, m, weight, "headings.from_to")
+    for m in _EXIT.finditer(text):
+        heading = compass_of(m.group("dir"))
+        if heading:
+            motion.exits.append(heading)
+            motion.read(f"exit {heading}", m.group("dir"), _EXIT.id)
+
+
+def _note_origin(motion: VehicleMotion, text: str, told: re.Match[str], weight: int, by: str) -> None:
+    """Notes the heading of a vehicle that comes from a side, behind a verb of coming or first in the text."""
+    came = compass_of(told["dir"])
+    if came and (not text[: told.start()].strip() or rule("headings.came").search(text[: told.start()])):
+        motion.add_value(motion.headings, max(1, weight - 1), turned(came, 180), told["dir"], by)
+
+
+def _note_sense(motion: VehicleMotion, told: re.Match[str], way: Compass) -> None:
+    """Note that a vehicle is told to face that way, or to go there backward."""
+    for sense, words in (("faces", rule("headings.facing")), ("backs", rule("headings.tail_first"))):
+        if words.search(told.group()):
+            motion.read(f"{sense} {way}", told["dir"], words.id)
+
+
+_MANY = {"both": 2} | NUMBERS
+_BOUND_VEHICLE = rule("headings.bound_vehicle")
+
+
+def note_headings_of_mentions(found: dict[str, VehicleMotion], text: str, weight: int) -> None:
+    """ "the northbound V2" tells a heading wherever it stands."""
+    for m in _BOUND_VEHICLE.finditer(text):
+        vehicle = m["v"] or m["v2"] or m["v3"]
+        if vehicle in found:
+            _note_heading(found[vehicle], m["dir"] or m["dir2"] or m["dir3"], weight, _BOUND_VEHICLE.id)
+    for m in rule("headings.bound_all").finditer(text):
+        many = _MANY.get((m["many"] or m["number"] or "").lower(), len(found))
+        for motion in found.values() if many == len(found) else ():
+            _note_heading(motion, m["dir"] or m["dir2"], weight, "headings.bound_all")
+
+
+def _note_heading(motion: VehicleMotion, word: str, weight: int, by: str) -> None:
+    heading = compass_of(word)
+    if heading:
+        motion.add_value(motion.headings, weight, heading, word, by)
+
+
+# ------------------------------------------------------------------ relation to the other vehicle
+
+
+def read_relations(motion: VehicleMotion, text: str, weight: int, vehicle: str, roster: Roster) -> None:
+    """Adds the directions relative to the other vehicle: same, opposite, crossing."""
+    for told in of_role("kin"):
+        relation, word = told.yields["kin"], told.yields.get("word", "")
+        for m in told.finditer(text):
+            named = rule("surroundings.named").match(text[m.end() :])
+            stranger = rule("surroundings.stranger").match(text[m.end() :])
+            other = named.group(1).upper() if named else None
+            if other not in roster.ids or other == vehicle:
+                other = None
+            if relation != "same" or not word or other or not stranger:
+                motion.relations.append((weight, relation, other or roster.other(vehicle), word))
+
+
+# ------------------------------------------------------------------ lane, access
+_LANE = rule("surroundings.lane")
+
+
+def read_lane(motion: VehicleMotion, text: str) -> None:
+    """Sets the first told lane, by number or by word."""
+    if motion.lane or motion.lane_word:
+        return
+    for m in _LANE.finditer(text):
+        if rule("surroundings.other_lane").search(text[: m.start()]) and not rule("surroundings.in_lane").search(
+            text[: m.start()]
+        ):
+            continue
+        number = m.group("n") or m.group("num")
+        nth = m.group("nth") or m.group("nth2")
+        if nth:
+            counted = values("ordinal").get(nth.lower(), 2)
+            motion.lane = counted if (m.group("from") or m.group("from2")).lower() == "right" else -counted
+        elif number:
+            motion.lane = NUMBERS.get(number.lower()) or (int(number) if number.isdigit() else None)
+        elif m.group("beside") or m.group("curb"):
+            motion.lane = -1 if (m.group("beside") or "").lower() == "left" else 1
+        elif m.group("inner"):
+            motion.lane = -1
+        elif m.group("ord"):
+            motion.lane = values("ordinal")[m.group("ord").lower()]
+        else:
+            motion.lane_word = _lane_word(m)
+        motion.read("lane", m.group(), _LANE.id)
+        return
+
+
+def _lane_word(m: re.Match[str]) -> str:
+    """left, right, middle, left_turn or right_turn."""
+    word = m.group("word").lower()
+    if m.group("turn") and word in ("left", "right", "center"):
+        return "left_turn" if word != "right" else "right_turn"
+    if word in ("middle", "center"):
+        return "middle"
+    return "left" if word in ("far left", "left-most", "leftmost", "left", "inside", "passing", "inner") else "right"
+
+
+_ORIGIN = rule("surroundings.origin")
+_TARGET = rule("surroundings.target")
+_ON_DRIVE = rule("surroundings.on_drive")
+_OUT_OF_ALLEY = rule("surroundings.out_of_alley")
+_RAMP = rule("surroundings.ramp")
+_SHOULDER = rule("surroundings.shoulder")
+
+
+def read_origin_and_target(motion: VehicleMotion, text: str) -> None:
+    """Sets the driveway, lot, ramp or shoulder that the vehicle came from or turned into."""
+    origin = _ORIGIN.search(text)
+    if motion.origin is None and (found := _came_from(text, origin)):
+        motion.origin, words, by = found
+        motion.read("origin", words, by)
+    target = next((m for m in _TARGET.finditer(text) if rule("surroundings.turning_in").search(text[: m.end()])), None)
+    if target and motion.target is None and not (origin and origin.start() < target.start() <= origin.end()):
+        motion.target = _place(target.group("place"))
+        motion.read("target", target.group("place"), _TARGET.id)
+
+
+def _came_from(text: str, origin: re.Match[str] | None) -> tuple[Access, str, str] | None:
+    """Where a vehicle came from, the words that tell it, and by which rule."""
+    if origin:
+        return _place(origin.group("place")), origin.group("place"), _ORIGIN.id
+    if alley := _OUT_OF_ALLEY.search(text):
+        return ALLEY, alley.group(), _OUT_OF_ALLEY.id
+    drive, ramp, shoulder = (pattern.search(text) for pattern in (_ON_DRIVE, _RAMP, _SHOULDER))
+    if drive and not rule("surroundings.approaching_driveway").search(text):
+        return DRIVEWAY, drive.group(), _ON_DRIVE.id
+    if ramp:
+        return RAMP, ramp.group(), _RAMP.id
+    return ("shoulder", shoulder.group(), _SHOULDER.id) if shoulder else None
+
+
+def _place(word: str) -> Access:
+    if rule("surroundings.alley").search(word):
+        return ALLEY
+    return DRIVEWAY if rule("surroundings.driveway").search(word) else "parking_lot"
