@@ -36,7 +36,7 @@ from sgcad_core.records.edits import AS_READ, Edit, effective
 from sgcad_core.result import STAGES, as_declared, result_of
 from sgcad_core.revision import CaseField, by_field, checked, fields_of, read_edits, report_digest, write_edits
 from sgcad_core.revision.applied import SOURCE
-from sgcad_core.revision.file import alone, merged, undone
+from sgcad_core.revision.file import facts_lock, merged, undone
 from sgcad_core.system.report_files import facts_file
 
 Given = Mapping[str, object]
@@ -150,7 +150,7 @@ def revise(
     started = time.perf_counter()
     case = opened(folder, report)
     new = _edits(edits, who, why)
-    with alone(case.source):
+    with facts_lock(case.source):
         before = _unchanged(case.edits(), seen)
         after = merged(before, new)
         if after == before:
@@ -162,7 +162,7 @@ def undo(folder: Path, *, seen: str | None = None, report: Path | None = None) -
     """Take the last revision of a case's report back, whoever made it. Raises WrongEdit where there is none."""
     started = time.perf_counter()
     case = opened(folder, report)
-    with alone(case.source):
+    with facts_lock(case.source):
         before = _unchanged(case.edits(), seen)
         if not before:
             raise WrongEdit(f"{case.folder.name}: there is nothing to undo: nobody has changed a fact of it")
@@ -172,7 +172,7 @@ def undo(folder: Path, *, seen: str | None = None, report: Path | None = None) -
 def note(source: Path, edits: Given, *, who: str = "", why: str = "") -> tuple[Edit, ...]:
     """Keep facts beside a report without running anything: the next run goes by them. Raises WrongEdit, BadInput."""
     new = _edits(edits, who, why)
-    with alone(source):
+    with facts_lock(source):
         digest = report_digest(source)
         after = merged(read_edits(facts_file(source), digest), new)
         write_edits(facts_file(source), after, digest)

@@ -91,7 +91,7 @@ def vary(family: Family, count: int, seed: int, look: Search | None = None) -> P
     """
     place = family.folder / "vary" / f"seed-{seed}"
     place.parent.mkdir(parents=True, exist_ok=True)
-    with temp_folders.beside(place) as partial:
+    with temp_folders.folder_beside(place) as partial:
         partial.chmod(0o755)
         _write(family, count, seed, partial)
         if look is not None:

@@ -14,7 +14,7 @@ import libsumo
 from plugins.driver._sumo_orders import Begin, Habits, Mover, Order, Place, Step
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.errors import SimulationFailed
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 _OPTIONS = (
     "--step-length", str(STEP_S), "--collision.action", "none", "--time-to-teleport", "-1", "--xml-validation", "never",
@@ -48,7 +48,7 @@ def obey(order: Order) -> float:
 
 def _begin(order: Begin) -> None:
     _free.clear()
-    with scratch("driver") as folder:
+    with temp_folder("driver") as folder:
         net, routes = folder / "road.net.xml", folder / "types.rou.xml"
         net.write_text(order.net_xml, encoding="utf-8")
         routes.write_text(_types(order.habits), encoding="utf-8")

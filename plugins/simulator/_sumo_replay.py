@@ -13,7 +13,7 @@ import libsumo
 
 from plugins.simulator._exchange import Mover, Replayed
 from sgcad_core.errors import SimulationFailed
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 _SILENT = ("--no-step-log", "true", "--duration-log.disable", "true", "--no-warnings", "true")
 _OPTIONS = ("--collision.action", "none", "--time-to-teleport", "-1", "--xml-validation", "never", *_SILENT)
@@ -29,7 +29,7 @@ def replay(net_xml: str, movers: Sequence[Mover], dt_s: float) -> Replayed:
     Where SUMO drops an actor (off the net), its own poses stand and a note says from when on. Raises
     SimulationFailed with SUMO's words.
     """
-    with scratch("replay") as folder:
+    with temp_folder("replay") as folder:
         net = folder / "road.net.xml"
         net.write_text(net_xml, encoding="utf-8")
         try:

@@ -14,7 +14,7 @@ import numpy as np
 
 from plugins.simulator._exchange import Driven
 from sgcad_core.errors import SimulationFailed
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 _COLLISIONS = ("--collision.action", "warn", "--collision.check-junctions", "true", "--collision.mingap-factor", "0")
 _SILENT = ("--no-step-log", "true", "--duration-log.disable", "true")
@@ -28,7 +28,7 @@ def drive(net_xml: str, routes_xml: str, ids: Sequence[str], longest_s: float, d
 
     Raises SimulationFailed with SUMO's words, or naming who never appears together.
     """
-    with scratch("drive") as folder:
+    with temp_folder("drive") as folder:
         net, routes = folder / "road.net.xml", folder / "scenario.rou.xml"
         net.write_text(net_xml, encoding="utf-8")
         routes.write_text(routes_xml, encoding="utf-8")

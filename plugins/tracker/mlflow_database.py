@@ -11,7 +11,7 @@ import os
 import sqlite3
 from pathlib import Path
 
-from sgcad_core.system.locks import alone
+from sgcad_core.system.locks import lock_file
 
 _BESIDE = ("", "-wal", "-shm", "-journal")
 """What sqlite may leave of one database."""
@@ -23,12 +23,17 @@ def make_database(file: Path) -> None:
         _usable(file)
         return
     file.parent.mkdir(parents=True, exist_ok=True)
-    with alone(file.parent):
+    with lock_file(database_lock(file)):
         if not file.exists():
             partial = file.with_name(f".{file.name}.partial")
             _remove(partial)
             _build(partial)
             os.replace(partial, file)
+
+
+def database_lock(file: Path) -> Path:
+    """The lock file of a database, beside it."""
+    return file.with_name(f".{file.name}.lock")
 
 
 def _usable(file: Path) -> None:

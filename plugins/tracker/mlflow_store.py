@@ -20,11 +20,11 @@ from pathlib import Path
 from typing import Any
 
 from plugins.tracker import mlflow_ready
-from plugins.tracker.mlflow_database import make_database
+from plugins.tracker.mlflow_database import database_lock, make_database
 from plugins.tracker.mlflow_ready import ELSEWHERE
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
-from sgcad_core.system.locks import alone
+from sgcad_core.system.locks import lock_file
 
 MAX_VALUE = 500
 """Characters of a parameter's value: MLflow's own limit is 6,000, a table shows far fewer."""
@@ -128,7 +128,7 @@ class Store:
         key = hashlib.sha256(json.dumps([config, params], sort_keys=True).encode()).hexdigest()[:16]
         if key not in self.parents:
             _ = self.experiment_id  # made before the lock is taken, which making a database takes as well
-            with alone(self._file.parent) if self._file else contextlib.nullcontext():
+            with lock_file(database_lock(self._file)) if self._file else contextlib.nullcontext():
                 self.parents[key] = Parent(self, self._found_or_made(config, key, params), config)
         return self.parents[key]
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import libsumo
 
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 STEP_S = 0.05
 _OPTIONS = (
@@ -21,7 +21,7 @@ def trial(
     """SUMO's message ("" if it runs), who never drove, and who collided with whom, each pair once."""
     met: set[str] = set()
     hits: dict[tuple[str, str], None] = {}
-    with scratch("routes") as folder:
+    with temp_folder("routes") as folder:
         net, routes = folder / "road.net.xml", folder / "scenario.rou.xml"
         net.write_text(net_xml, encoding="utf-8")
         routes.write_text(routes_xml, encoding="utf-8")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import libsumo
 
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 STEPS = 2
 
 
 def start(net_xml: str) -> str:
     """ "" if SUMO loads the network and steps on it, else SUMO's message (details stand on stderr)."""
-    with scratch("load") as folder:
+    with temp_folder("load") as folder:
         file = folder / "road.net.xml"
         file.write_text(net_xml, encoding="utf-8")
         try:

@@ -22,7 +22,7 @@ from sgcad_core.formats.sumo.netconvert import compile_network, net_of_xodr
 from sgcad_core.formats.sumo.parameters import CONTROL
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.roads.lane_graph import Connection, Edge, LaneGraph
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 ASPECTS = ("edges", "lanes", "widths", "limits", "connections", "signals", "signs")
 Reader = Literal["netconvert", "sgcad"]
@@ -91,7 +91,7 @@ def differences(net_xml: str, xodr: str, reader: Reader = "netconvert") -> list[
 
 
 def _read_as_map(xodr: str) -> tuple[str, str]:
-    with scratch("back") as folder:
+    with temp_folder("back") as folder:
         file = folder / "road.xodr"
         file.write_text(xodr, encoding="utf-8")
         try:

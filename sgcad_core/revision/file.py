@@ -25,8 +25,8 @@ from pydantic import ValidationError
 from sgcad_core.errors import BadInput, ConfigError, WrongEdit
 from sgcad_core.records.edits import AS_READ, Edit
 from sgcad_core.revision.fields import checked
-from sgcad_core.system import locks
-from sgcad_core.system.report_files import FACTS, is_regular, read_regular
+from sgcad_core.system.locks import lock_file
+from sgcad_core.system.report_files import FACTS, LOCK, facts_file, is_regular, read_regular
 
 MOST_BYTES = 1_000_000
 MOST_EDITS = 2_000
@@ -119,7 +119,11 @@ def write_edits(path: Path, edits: Sequence[Edit], digest: str = "") -> None:
                 os.unlink(partial)
             raise
     except OSError as fault:
-        raise ConfigError(f"{path}: cannot be written ({fault.strerror}); make the report's folder writable") from fault
+        raise _unwritable(path, fault) from fault
+
+
+def _unwritable(path: Path, fault: OSError) -> ConfigError:
+    return ConfigError(f"{path}: cannot be written ({fault.strerror}); make the report's folder writable")
 
 
 def _text(edits: Sequence[Edit], digest: str) -> str:
@@ -150,14 +154,18 @@ def undone(edits: Sequence[Edit]) -> tuple[Edit, ...]:
 
 
 @contextmanager
-def alone(source: Path) -> Iterator[None]:
-    """Keep every other process from changing the facts of this report meanwhile; who waits goes on after.
+def facts_lock(source: Path) -> Iterator[None]:
+    """Keeps other processes from changing the facts of this report during the block; the next one waits.
 
-    The lock lies on the report's folder (or file) itself and leaves nothing there. Raises BadInput: it is gone.
+    Raises BadInput where the report is gone, ConfigError where its folder cannot be written.
     """
+    file = facts_file(source)
     with contextlib.ExitStack() as held:
         try:
-            held.enter_context(locks.alone(source))
+            source.stat()
+            held.enter_context(lock_file(file.with_name(f".{file.name}{LOCK}")))
+        except PermissionError as fault:
+            raise _unwritable(file, fault) from fault
         except OSError as fault:
             gone = f"{source}: the report is gone ({fault.strerror}): put it back, or name it with --report"
             raise BadInput(gone) from fault

@@ -22,7 +22,7 @@ from sgcad_core.formats.sumo.parameters import CONTROL
 from sgcad_core.formats.sumo.plain_xml import BESIDE, CENTER_LANE_CLASS
 from sgcad_core.formats.xml import Element, parse_xml, to_text
 from sgcad_core.roads.junction_words import JunctionLeg
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 TIMEOUT_S = 120.0
 MOST_EDGES = 110
@@ -52,7 +52,7 @@ def plain_of_map(file: Path) -> PlainXml:
 
 def _parts(file: Path, flags: Sequence[str] = _FLAGS) -> tuple[Element, Element, Element]:
     """Nodes, edges and connections as netconvert reads them, completed where it passes over what an .xodr says."""
-    with scratch("map") as folder:
+    with temp_folder("map") as folder:
         parts = _converted(file, flags, folder)
     try:
         nodes, edges, links = (parse_xml(text, file.name) for text in parts)

@@ -21,7 +21,7 @@ from sgcad_core.formats.opendrive.write import write_xodr
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
 from sgcad_core.records.specs import RoadSpec
 from sgcad_core.system.subprocess_limits import ended_from_outside, run_limited
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 TIMEOUT_S = 60.0
 LEAST_FREE = 1 << 20
@@ -62,7 +62,7 @@ def compile_network(plain: PlainXml, spec: RoadSpec | None = None) -> RoadNetwor
 
 
 def _compile(plain: PlainXml, spec: RoadSpec | None) -> RoadNetwork:
-    with scratch("net") as folder:
+    with temp_folder("net") as folder:
         code, said = _run(plain, folder)
         net = _read(folder / "road.net.xml")
     log = _without_closed(said, spec)
@@ -124,7 +124,7 @@ def _read(file: Path) -> str | None:
 
 def net_of_xodr(xodr: str) -> tuple[str, str]:
     """(.net.xml, netconvert's words) as netconvert reads an OpenDRIVE file by itself; "" where it cannot."""
-    with scratch("back") as folder:
+    with temp_folder("back") as folder:
         (folder / "road.xodr").write_text(xodr, encoding="utf-8")
         code, log = _call(["--opendrive-files", "road.xodr", *FLAGS, "-o", "road.net.xml"], folder)
         net = _read(folder / "road.net.xml") if code == 0 else None

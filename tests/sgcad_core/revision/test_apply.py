@@ -9,7 +9,7 @@ from sgcad_core.reading.reading_with_edits import holds, mended
 from sgcad_core.records.edits import AS_READ, Edit, by_person, canonical, effective
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
-from sgcad_core.revision import applied
+from sgcad_core.revision import standing
 from sgcad_core.revision.actors import laid_behavior
 from sgcad_core.revision.fields import EDITABLE, fields_of
 from sgcad_core.revision.file import merged, undone
@@ -48,7 +48,7 @@ def test_junctions_become_what_a_person_says_and_stand():
     for kind in ("none", "t", "four_leg", "driveway", "roundabout", "parking_lot", "ramp"):
         laid = laid_roads(SPEC, LAYOUT, {"junction.kind": kind})
         assert junction_kind_of(laid) == kind
-        assert applied(edits(junction__kind=kind), "road", laid) == []
+        assert standing(edits(junction__kind=kind), "road", laid) == []
 
 
 def test_the_stem_lies_where_a_person_says():
@@ -100,12 +100,12 @@ def test_an_avoided_contact_is_a_near_crash_and_back():
 
 def test_what_does_not_stand_is_told_with_its_reason():
     given = edits(vehicles__V9__kind="bus", V1__start_lane=4, contacts__5__striker="V1")
-    told = applied(given, "scenario", SPEC, BEHAVIOR)
+    told = standing(given, "scenario", SPEC, BEHAVIOR)
     assert [f.where for f in told] == ["vehicles.V9.kind", "vehicles.V1.start_lane", "contacts.5.striker"]
     assert "there are V1, V2" in told[0].what
     assert "1 lane(s)" in told[1].what
     assert {f.severity for f in told} == {"doubt"}
-    assert "there are N, S, W" in applied(edits(roads__Q__lanes_forward=1), "road", SPEC)[0].what
+    assert "there are N, S, W" in standing(edits(roads__Q__lanes_forward=1), "road", SPEC)[0].what
 
 
 def test_a_finding_from_the_narrative_yields_to_a_person_and_a_fault_of_the_drawing_does_not():
@@ -188,7 +188,7 @@ def test_every_edit_stands_or_is_told(pairs):
     values = {e.field: e.value for e in effective(given_edits)}
     road = laid_roads(SPEC, LAYOUT, values)
     behavior = laid_behavior(BEHAVIOR, road, values)
-    told = {f.where for f in (*applied(given_edits, "road", road), *applied(given_edits, "scenario", road, behavior))}
+    told = {f.where for f in (*standing(given_edits, "road", road), *applied(given_edits, "scenario", road, behavior))}
     for edit in effective(given_edits):
         if not edit.field.endswith(".heading"):
             assert edit.field in told or value_of(edit.field, road, behavior) == edit.value
