@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from sgcad_core.account import Account, Note, account_of
 from sgcad_core.account.inputs import Made
 from sgcad_core.account.notes import notes_of
-from sgcad_core.case.records import ActorInfo, Execution, Fact, Generation, RoadNetwork, Scenario, StageOutcome
+from sgcad_core.case.records import Execution, Fact, Generation, RoadNetwork, Scenario, StageOutcome
 from sgcad_core.execution.compare_executions import Judgement
 from sgcad_core.execution.contact import avoided, closest_approach, first_with, realised
 from sgcad_core.execution.playback import sizes_of
@@ -84,7 +84,7 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
         "missing": list(missing),
         "attempts": {s: len(record.outcomes[s].attempts) if s in record.outcomes else 0 for s in STAGES},
         "network": _network(record.network),
-        "actors": [_actor(actor) for actor in record.scenario.actors] if record.scenario else [],
+        "actors": [actor.model_dump() for actor in record.scenario.actors] if record.scenario else [],
         "collision": _collision(record.scenario, record.execution),
         "near_crash": _near_crash(record.scenario, record.execution),
         **judged,
@@ -179,16 +179,6 @@ def _network(network: RoadNetwork | None) -> dict[str, Any] | None:
         "components": figures.components,
         "mean_lanes": round(figures.mean_lanes, 4),
         "segments": segments(graph),
-    }
-
-
-def _actor(actor: ActorInfo) -> dict[str, Any]:
-    return {
-        "id": actor.id,
-        "type": actor.type,
-        "length_m": actor.length_m,
-        "width_m": actor.width_m,
-        "maneuver": actor.maneuver,
     }
 
 

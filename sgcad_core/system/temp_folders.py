@@ -18,7 +18,7 @@ from pathlib import Path
 
 from filelock import FileLock
 
-PREFIX = "sgcad-scratch-"
+PREFIX = "sgcad-temp-"
 _LOCK, _CONTENT = "lock", "content"
 
 

@@ -64,7 +64,7 @@ def way(start: Pose, end: Pose, via: Floats) -> Way:
     if abs(wrap(end.heading_rad - start.heading_rad)) < STRAIGHT_RAD and abs(aside) < STRAIGHT_M and distance > 0:
         return Way(start, None, distance)
     tangents = _tangents(start, end, via)
-    cubic = hermite(start, end) if tangents is None else _local(start, end, tangents)
+    cubic = hermite(start, end, tangents)
     return Way(start, cubic, float(cubic_lengths(np.array([cubic]), np.ones(1))[0]))
 
 
@@ -103,13 +103,3 @@ def _inner(via: Floats, first: Floats, last: Floats) -> Floats:
     """Points between the ends; SUMO's own ends too where its lanes end elsewhere than the roads."""
     away = [float(np.hypot(*(via[i] - end))) > SAME_END_M for i, end in ((0, first), (-1, last))]
     return via[0 if away[0] else 1 : len(via) if away[1] else -1]
-
-
-def _local(start: Pose, end: Pose, reach: tuple[float, float]) -> tuple[float, ...]:
-    """Coefficients in the frame of the start pose."""
-    dx, dy = end.x_m - start.x_m, end.y_m - start.y_m
-    c, s = math.cos(start.heading_rad), math.sin(start.heading_rad)
-    u, v = dx * c + dy * s, dy * c - dx * s
-    turn = end.heading_rad - start.heading_rad
-    u1, v1 = reach[1] * math.cos(turn), reach[1] * math.sin(turn)
-    return 0.0, reach[0], 3 * u - 2 * reach[0] - u1, u1 + reach[0] - 2 * u, 0.0, 0.0, 3 * v - v1, v1 - 2 * v

@@ -104,22 +104,6 @@ def imported_lanes(root: Element) -> dict[str, list[Element]]:
     return found
 
 
-def center_lanes(root: Element) -> dict[str, int]:
-    """Edge -> how many of its lanes are two-way left-turn lanes, which netconvert opens to through cars."""
-    counts = {
-        edge: sum(lane.get("type") == "bidirectional" for lane in lanes) for edge, lanes in imported_lanes(root).items()
-    }
-    return {edge: count for edge, count in counts.items() if count}
-
-
-def parking_lanes(root: Element) -> dict[str, int]:
-    """Edge -> how many of its lanes are parking lanes, which netconvert opens to cars that drive."""
-    counts = {
-        edge: sum(lane.get("type") == "parking" for lane in lanes) for edge, lanes in imported_lanes(root).items()
-    }
-    return {edge: count for edge, count in counts.items() if count}
-
-
 def width_of(lane: Element) -> float | None:
     """The greatest width at the beginning of a <width> of a lane, as netconvert takes it; None where it has none."""
     return max((number(width, "a") for width in lane.iterfind("width")), default=None)

@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 from itertools import count
 from typing import NamedTuple
 
-from sgcad_core.formats.opendrive.streets import Side, Street, Strip, streets
-from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.formats.opendrive.streets import Side, Street, Strip
 from sgcad_core.formats.sumo.parameters import CONTROL, LIMIT, POSTED
 from sgcad_core.roads.lane_graph import Connection, Edge, LaneGraph
 
@@ -100,15 +99,6 @@ class _Approach(NamedTuple):
     edge: Edge
     street: Street
     links: tuple[Connection, ...]
-
-
-def signal_controllers(net_xml: str) -> tuple[Controller, ...]:
-    """Controllers and phases of a network as its .xodr names them, for a scenario's <TrafficSignals>.
-
-    Empty where no signal stands. Raises InvalidOutput where it is no network.
-    """
-    graph = parse_net(net_xml)
-    return control_of(graph, streets(graph)).controllers if graph.programs else ()
 
 
 def control_of(graph: LaneGraph, roads: Sequence[Street]) -> Control:

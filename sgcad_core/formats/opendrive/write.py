@@ -48,8 +48,7 @@ def write_xodr(net_xml: str) -> str:
     roads = streets(graph, _trims(graph))
     if not roads:
         what, remedy = "the network has no road that can be drawn", "give it an edge of 1 m or more"
-        finding = Finding(source="xodr", what=what, value=f"{len(graph.edges)} edges", remedy=remedy)
-        raise InvalidOutput(finding.line(), [finding])
+        raise InvalidOutput.of(Finding(source="xodr", what=what, value=f"{len(graph.edges)} edges", remedy=remedy))
     return to_text(_Document(graph, roads).root())
 
 

@@ -8,21 +8,19 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from functools import cache
-from importlib.metadata import PackageNotFoundError, distribution
 from itertools import islice
 
 import numpy as np
 from lxml import etree
 
 from sgcad_core.case.records import Finding
-from sgcad_core.errors import InvalidOutput, MissingTool
+from sgcad_core.errors import InvalidOutput
 from sgcad_core.findings import Finder
 from sgcad_core.formats.opendrive.checks.road_index import RoadIndex, lane_index
 from sgcad_core.formats.opendrive.geometry import end_pose, geometries, start_pose
 from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.formats.openscenario.reading.elements import SOURCE, Node, read_root
-from sgcad_core.formats.xml import parse_xml, schema_errors
+from sgcad_core.formats.xml import asam_schema, parse_xml, schema_errors
 from sgcad_core.geometry.plane import Floats
 
 _finding = Finder(SOURCE)
@@ -46,7 +44,10 @@ def xosc_findings(xosc: str, xodr: str | None, road_file: str = "road.xodr") -> 
     """
     try:
         root = read_root(xosc)
-        broken = [_schema_finding(line, message) for line, message in schema_errors(_schema_of(root), root.element)]
+        broken = [
+            _finding(message, f"line {line}", remedy="follow the OpenSCENARIO schema")
+            for line, message in schema_errors(_schema_of(root), root.element)
+        ]
         found = broken or list(islice(_content(root, xodr, road_file), MAX_FINDINGS))
         if not found:
             play(xosc, xodr)
@@ -81,21 +82,7 @@ def _schema_of(root: Node) -> etree.XMLSchema:
     minor = header.text("revMinor")
     if header.text("revMajor") != "1" or minor not in _SCHEMAS:
         raise header.fault("unknown OpenSCENARIO version", f"{header.text('revMajor')}.{minor}", "write revMinor 2")
-    return _schema(_SCHEMAS[minor])
-
-
-@cache
-def _schema(version: str) -> etree.XMLSchema:
-    try:
-        file = distribution("scenariogeneration").locate_file(f"schemas/OpenSCENARIO_{version}.xsd")
-    except PackageNotFoundError as fault:
-        message = "the OpenSCENARIO schemas come with scenariogeneration: `pip install scenariogeneration`"
-        raise MissingTool(message) from fault
-    return etree.XMLSchema(etree.parse(str(file), etree.XMLParser(no_network=True)))
-
-
-def _schema_finding(line: int, message: str) -> Finding:
-    return _finding(message, f"line {line}", remedy="follow the OpenSCENARIO schema")
+    return asam_schema(f"OpenSCENARIO_{_SCHEMAS[minor]}")
 
 
 # ------------------------------------------------------------------ entities

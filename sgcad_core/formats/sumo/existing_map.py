@@ -37,21 +37,18 @@ _LINK = ("fromLane", "toLane")
 
 def read_map(file: Path) -> PlainXml:
     """Read a map. Raises ConfigError naming the file for one that netconvert cannot read or that is too large."""
-    nodes, edges, links = _parts(file)
+    nodes, edges, links = map_parts(file)
     found = _with_junction(list(edges.iterfind("edge")))
     if not 0 < len(found) <= MOST_EDGES:
         raise ConfigError(f"{file}: {len(found)} one-way edges, a map has 1 to {MOST_EDGES}: cut it smaller")
     return _renamed(nodes, found, links)
 
 
-def plain_of_map(file: Path) -> PlainXml:
-    """A map under netconvert's own names. Raises ConfigError naming the file for one that it cannot read."""
-    nodes, edges, links = _parts(file, ("--no-turnarounds",))
-    return PlainXml(nodes=to_text(nodes), edges=to_text(edges), connections=to_text(links))
+def map_parts(file: Path, flags: Sequence[str] = _FLAGS) -> tuple[Element, Element, Element]:
+    """Nodes, edges and connections as netconvert reads them, completed where it ignores parts of an .xodr.
 
-
-def _parts(file: Path, flags: Sequence[str] = _FLAGS) -> tuple[Element, Element, Element]:
-    """Nodes, edges and connections as netconvert reads them, completed where it passes over what an .xodr says."""
+    Raises ConfigError naming the file for one that cannot be read.
+    """
     with temp_folder("map") as folder:
         parts = _converted(file, flags, folder)
     try:

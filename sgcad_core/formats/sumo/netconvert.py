@@ -122,15 +122,6 @@ def _read(file: Path) -> str | None:
     return re.sub(r"<!--.*?-->\s*", "", file.read_text(encoding="utf-8"), count=1, flags=re.DOTALL)
 
 
-def net_of_xodr(xodr: str) -> tuple[str, str]:
-    """(.net.xml, netconvert's words) as netconvert reads an OpenDRIVE file by itself; "" where it cannot."""
-    with temp_folder("back") as folder:
-        (folder / "road.xodr").write_text(xodr, encoding="utf-8")
-        code, log = _call(["--opendrive-files", "road.xodr", *FLAGS, "-o", "road.net.xml"], folder)
-        net = _read(folder / "road.net.xml") if code == 0 else None
-    return net or "", log
-
-
 def plain_files(file: Path, source: Sequence[str], folder: Path, timeout_s: float) -> tuple[Path, Path, Path]:
     """Node, edge and connection file of a user's map, written to `folder`; `source`: netconvert's flags for reading it.
 

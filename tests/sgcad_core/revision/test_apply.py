@@ -188,7 +188,7 @@ def test_every_edit_stands_or_is_told(pairs):
     values = {e.field: e.value for e in effective(given_edits)}
     road = laid_roads(SPEC, LAYOUT, values)
     behavior = laid_behavior(BEHAVIOR, road, values)
-    told = {f.where for f in (*standing(given_edits, "road", road), *applied(given_edits, "scenario", road, behavior))}
+    told = {f.where for f in (*standing(given_edits, "road", road), *standing(given_edits, "scenario", road, behavior))}
     for edit in effective(given_edits):
         if not edit.field.endswith(".heading"):
             assert edit.field in told or value_of(edit.field, road, behavior) == edit.value

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.actions.running import PRIVATE, Begin, Running, relative_speed
 from sgcad_core.formats.openscenario.actions.speed import LONGITUDINAL
 from sgcad_core.formats.openscenario.playing.body import Body
@@ -13,7 +14,6 @@ from sgcad_core.formats.openscenario.playing.distances import ahead_of
 from sgcad_core.formats.openscenario.playing.offset_course import Course
 from sgcad_core.formats.openscenario.playing.positions import Where, position
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose
 from sgcad_core.formats.openscenario.reading.elements import Node
 
 STIFFNESS = 0.4

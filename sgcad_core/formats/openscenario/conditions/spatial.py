@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.conditions.rules import BY_ENTITY, OfEntity, rule
 from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.distances import KINDS, STRAIGHT, apart, box_of, system_of
 from sgcad_core.formats.openscenario.playing.positions import position
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, Pose
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON
 from sgcad_core.formats.openscenario.reading.elements import Node
 from sgcad_core.geometry.plane import overlap
 

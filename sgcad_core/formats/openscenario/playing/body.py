@@ -9,8 +9,9 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.offset_course import Course
-from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, BoxShape, Pose, Timed
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, BoxShape, Timed
 from sgcad_core.formats.openscenario.roads.way import LanePlace, Route
 
 STILL_MPS = 1e-3

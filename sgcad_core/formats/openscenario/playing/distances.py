@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import math
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.playing.timed_motion import BoxShape, Pose
+from sgcad_core.formats.openscenario.playing.timed_motion import BoxShape
 from sgcad_core.formats.openscenario.reading.elements import Node
 from sgcad_core.geometry.distances import box_distance
 from sgcad_core.geometry.plane import Box

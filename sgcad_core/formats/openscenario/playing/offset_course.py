@@ -11,7 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, Pose, Transition
+from sgcad_core.formats.opendrive.geometry import Pose
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, Transition
 from sgcad_core.formats.openscenario.roads.way import LanePlace, Way
 from sgcad_core.geometry.plane import Floats, arc_lengths
 

@@ -14,6 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from sgcad_core.case.records import Finding, Floats, Trajectory
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.actions.running import control
 from sgcad_core.formats.openscenario.playing.body import Body, draw
 from sgcad_core.formats.openscenario.playing.entity import bodies_of, selections_of
@@ -21,7 +22,7 @@ from sgcad_core.formats.openscenario.playing.scene import Scene
 from sgcad_core.formats.openscenario.playing.signal_phases import SignalPlan
 from sgcad_core.formats.openscenario.playing.story import Storyboard
 from sgcad_core.formats.openscenario.playing.storyboard_init import initialize
-from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, MAX_S, BoxShape, Pose
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, MAX_S, BoxShape
 from sgcad_core.formats.openscenario.reading.elements import Node, read_root
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads, roads_of
 

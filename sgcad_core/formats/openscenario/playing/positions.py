@@ -12,10 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.families import Family
-from sgcad_core.formats.openscenario.playing.scene import Roads, Scene
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose
+from sgcad_core.formats.openscenario.playing.scene import Scene
 from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
 from sgcad_core.formats.openscenario.roads.way import LanePlace
 from sgcad_core.geometry.plane import Floats
 
@@ -154,7 +155,7 @@ def _relative_lane(node: Node) -> Where:
     return where
 
 
-def _moved(roads: Roads, place: LanePlace, ds: float, sense: int) -> tuple[LanePlace, int]:
+def _moved(roads: XodrRoads, place: LanePlace, ds: float, sense: int) -> tuple[LanePlace, int]:
     """A place moved along its lane, over the ends of roads; and the sense of driving there."""
     try:
         roads.road_pose(place.road, place.s_m + ds * sense, 0.0)

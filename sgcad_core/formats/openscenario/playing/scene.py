@@ -6,66 +6,18 @@ Knows no XML beyond the node that is blamed for a fault.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Protocol
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.offset_course import Course, beside, straight
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose, Transition
+from sgcad_core.formats.openscenario.playing.timed_motion import Transition
 from sgcad_core.formats.openscenario.reading.elements import Node
-from sgcad_core.formats.openscenario.roads.way import LanePlace, Route, Way
+from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
+from sgcad_core.formats.openscenario.roads.way import LanePlace, Route
 
 TRANSITIONS = ("startTransition", "endTransition", "stopTransition", "skipTransition")
-
-
-class Apart(Protocol):
-    """How far a place lies from another along the roads."""
-
-    @property
-    def ahead_m(self) -> float:
-        """Ahead, metres; behind: negative."""
-
-    @property
-    def left_m(self) -> float:
-        """To the left, metres."""
-
-
-class Roads(Protocol):
-    """What the player asks of a road network. Faults are ValueErrors that say what there is instead."""
-
-    def road_pose(self, road: str, s_m: float, t_m: float) -> Pose:
-        """Pose on a road; heading along its reference line."""
-
-    def lane_pose(self, road: str, lane: int, s_m: float, offset_m: float) -> Pose:
-        """Pose in a lane; heading in its driving direction, `offset_m` to the left of the reference direction."""
-
-    def place_at(self, road: str, s_m: float, t_m: float) -> LanePlace:
-        """Road coordinates as a place in the lane that holds them."""
-
-    def t_of(self, place: LanePlace) -> float:
-        """A lane place's t on its road, metres."""
-
-    def beyond(self, road: str, s_m: float) -> float:
-        """How far s lies behind a road's end (before its start: negative), metres."""
-
-    def sense(self, place: LanePlace, heading_rad: float) -> int:
-        """1 where a heading leads along s there, -1 where against it."""
-
-    def nearest(self, pose: Pose) -> LanePlace | None:
-        """The lane one drives in there, if any."""
-
-    def on_road(self, pose: Pose) -> bool:
-        """Whether a point lies on a lane of any kind but "none"."""
-
-    def drive(self, place: LanePlace, sense: int, route: Route | None = None) -> Way:
-        """The lane center ahead of a place in a sense of driving, over its successors."""
-
-    def route(self, places: Sequence[LanePlace], sense: int | None = None) -> Route:
-        """Shortest roads over places in order."""
-
-    def apart(self, first: LanePlace, sense: int, second: LanePlace) -> Apart | None:
-        """Where the second place lies as seen along the roads from the first; None where no road leads there."""
 
 
 class Stage:
@@ -88,7 +40,7 @@ class Scene:
 
     dt_s: float
     bodies: dict[str, Body]
-    roads: Roads | None = None
+    roads: XodrRoads | None = None
     step: int = 0
     stages: list[Stage] = field(default_factory=list)
     parameters: dict[str, str] = field(default_factory=dict)
@@ -123,7 +75,7 @@ class Scene:
             raise blame.fault("entity has no place yet", name, "teleport it in Init before it is referred to")
         return pose
 
-    def road_map(self, blame: Node) -> Roads:
+    def road_map(self, blame: Node) -> XodrRoads:
         """The road network. Raises InvalidOutput where none was given."""
         if self.roads is None:
             raise blame.fault(self.no_map, remedy="use WorldPosition, or give the map")

@@ -12,19 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.geometry.plane import Floats, wrap_angle
 
 EPSILON = 1e-9
 MAX_S = 300.0
 """Longest scenario that is played."""
-
-
-class Pose(NamedTuple):
-    """Place and heading."""
-
-    x_m: float
-    y_m: float
-    heading_rad: float
 
 
 class BoxShape(NamedTuple):

@@ -7,10 +7,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.offset_course import Course
 from sgcad_core.formats.openscenario.playing.positions import POSITIONS, Spot, Where, orientation
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose, Timed, tangents
+from sgcad_core.formats.openscenario.playing.timed_motion import Timed, tangents
 from sgcad_core.formats.openscenario.reading.elements import Node
 from sgcad_core.formats.openscenario.roads.shapes import SHAPES, Drawn, Line
 from sgcad_core.geometry.plane import Floats, arc_lengths

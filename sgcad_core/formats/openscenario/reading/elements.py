@@ -80,8 +80,7 @@ class Node:
 
     def fault(self, what: str, value: str = "", remedy: str = "") -> InvalidOutput:
         """An error to raise, naming this element, its name attribute, its line and its file."""
-        finding = self._found(what, value, remedy)
-        return InvalidOutput(finding.line(), [finding])
+        return InvalidOutput.of(self._found(what, value, remedy))
 
     def unsupported(self, what: str = "", remedy: str = "use timed world polylines") -> Unsupported:
         """The error for what the player does not do."""

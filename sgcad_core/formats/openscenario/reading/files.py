@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sgcad_core.errors import BadInput
 from sgcad_core.formats.openscenario.playing.player import DT_S, Played, perform
 from sgcad_core.formats.openscenario.playing.timed_motion import MAX_S
 from sgcad_core.formats.openscenario.reading.catalogs import CatalogFolders, located, read_text
@@ -84,10 +83,3 @@ def _places(folder: Path, named: str, maps: Sequence[Path]) -> Iterator[Path]:
     for other in maps:
         yield other / name
         yield other / f"{name}.xodr"
-
-
-def scenario_files(folder: Path) -> list[Path]:
-    """Scenario and distribution files of a folder and below, without catalogs. Raises BadInput."""
-    if not folder.is_dir():
-        raise BadInput(f"{folder}: no such folder")
-    return [f for f in sorted(folder.rglob("*.xosc")) if "<Catalog " not in read_text(f)]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.case.records import Trajectory
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
 from sgcad_core.formats.openscenario.roads.way import LanePlace, Way
 from sgcad_core.geometry.plane import Floats, arc_lengths, wrap_angle

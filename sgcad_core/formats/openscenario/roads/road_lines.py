@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.reading.elements import Node
 from sgcad_core.formats.openscenario.roads.road_geometry import MAX_ROAD_M, reference_line
 from sgcad_core.geometry.plane import Floats

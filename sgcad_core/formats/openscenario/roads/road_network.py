@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose, angle_between
+from sgcad_core.formats.opendrive.geometry import Pose
+from sgcad_core.formats.openscenario.playing.timed_motion import angle_between
 from sgcad_core.formats.openscenario.reading.elements import Node
 from sgcad_core.formats.openscenario.roads.road_lines import DRIVABLE, RoadLine
 from sgcad_core.formats.openscenario.roads.road_links import Leg, RoadLinks, Step
@@ -42,7 +43,8 @@ def roads_of(xodr: str) -> XodrRoads:
 
 
 class XodrRoads:
-    """Implements `scene.Roads` for a .xodr, read when first asked. Raises InvalidOutput where it is none."""
+    """The roads of a .xodr, read at the first question. Unknown roads, lanes and places raise ValueErrors that say what
+    there is instead; what is no OpenDRIVE raises InvalidOutput."""
 
     def __init__(self, xodr: str) -> None:
         self._xodr = xodr

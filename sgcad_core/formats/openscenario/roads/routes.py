@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.positions import POSITIONS, Spot, Where, orientation, position
-from sgcad_core.formats.openscenario.playing.scene import Roads, Scene
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose
+from sgcad_core.formats.openscenario.playing.scene import Scene
 from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
 from sgcad_core.formats.openscenario.roads.way import LanePlace, Route
 
 MAX_WAYPOINTS = 1000
@@ -32,7 +33,7 @@ def route(holder: Node) -> RouteOf:
     return made
 
 
-def _on_road(scene: Scene, roads: Roads, where: Where, blame: Node) -> LanePlace:
+def _on_road(scene: Scene, roads: XodrRoads, where: Where, blame: Node) -> LanePlace:
     spot = where(scene)
     if (place := spot.place or roads.nearest(spot.pose)) is None:
         raise blame.fault("the waypoint lies on no road", f"{spot.pose.x_m:g}, {spot.pose.y_m:g}")

@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.families import Family
 from sgcad_core.formats.openscenario.playing.positions import has_heading, position, rolls_of
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose
 from sgcad_core.formats.openscenario.reading.elements import Node
 from sgcad_core.geometry.plane import Floats, arc_lengths
 

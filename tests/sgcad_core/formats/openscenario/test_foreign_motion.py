@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.player import play
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose, Timed
+from sgcad_core.formats.openscenario.playing.timed_motion import Timed
 from sgcad_core.formats.openscenario.reading.files import play_file, variations
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
 from tests.sgcad_core.formats.xosc_samples import (

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from research.benchmarks.scenes.conformance import FAMILIES, page, written_elements
 from sgcad_core.errors import Unsupported
-from sgcad_core.formats.openscenario.conformance import FAMILIES, page, written_elements
 from sgcad_core.formats.openscenario.reading.elements import Node
 from sgcad_core.formats.xml import parse_xml
 
