@@ -83,9 +83,9 @@ class SimulationFailed(SgcadError):
 
 
 class ProcessDied(SimulationFailed):
-    """A worker process was killed or crashed before its time was over; whoever killed it need not be the report.
+    """A worker process was killed or crashed within its time limit; the report need not be the cause.
 
-    `from_outside`: a signal ended it that no crash sends: somebody's kill, or the system's want of memory.
+    `from_outside`: a signal that no crash sends ended it: a kill, or the system's lack of memory.
     """
 
     def __init__(self, message: str, *, from_outside: bool = False) -> None:

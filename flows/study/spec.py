@@ -27,9 +27,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from flows.batch.find_cases import safe_id
 from flows.study import cross_product
 from sgcad_core import settings
-from sgcad_core.config_faults import unknown
+from sgcad_core.config_faults import unknown_name
 from sgcad_core.errors import ConfigError
-from sgcad_core.near_names import nearest
+from sgcad_core.near_names import did_you_mean
 
 STUDIES = settings.CONFIGS / "studies"
 MAX_ARMS = 500
@@ -159,7 +159,7 @@ def find_study(path: Path) -> Path:
         if file.is_file():
             return file
     known = sorted(f.stem for f in STUDIES.glob("*.yaml"))
-    raise ConfigError(f"{path}: no such study.{nearest(path.stem, known)} In configs/studies/: {', '.join(known)}")
+    raise ConfigError(f"{path}: no such study.{did_you_mean(path.stem, known)} In configs/studies/: {', '.join(known)}")
 
 
 def _parsed(raw: dict[str, Any]) -> tuple[_File | None, list[str]]:
@@ -183,7 +183,7 @@ def _line(error: Any) -> str:
     if error["type"] == "extra_forbidden":
         parts: dict[str, type[_Part]] = {"arms": Arm, "cross": Cross} if len(error["loc"]) > 1 else {}
         part = parts.get(str(error["loc"][0]), _File)
-        return f"{place}: {unknown('key', str(error['loc'][-1]), list(part.model_fields))}"
+        return f"{place}: {unknown_name('key', str(error['loc'][-1]), list(part.model_fields))}"
     return f"{place}: {error['msg']} (found {error['input']!r})"
 
 

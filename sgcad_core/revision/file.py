@@ -1,4 +1,4 @@
-"""facts.yaml beside a report: what people said of it, who, when and why. A strict, small file, replaced whole.
+"""facts.yaml beside a report: edits with author, time and reason. A strict, small file, replaced as a whole.
 
     for: 3f6c...           # fingerprint of the narrative that it was written for
     edits:
@@ -24,7 +24,7 @@ from pydantic import ValidationError
 
 from sgcad_core.errors import BadInput, ConfigError, WrongEdit
 from sgcad_core.records.edits import AS_READ, Edit
-from sgcad_core.revision.fields import checked
+from sgcad_core.revision.fields import parsed_edit
 from sgcad_core.system.locks import lock_file
 from sgcad_core.system.report_files import FACTS, LOCK, facts_file, is_regular, read_regular
 
@@ -90,7 +90,7 @@ def _edit(path: Path, number: int, row: Any) -> Edit:
     if not isinstance(row, dict) or "field" not in row or "value" not in row:
         raise BadInput(f"{at}: {row!r} is no edit: give field and value, and who, when and why")
     try:
-        name, value = checked(str(row["field"]), row["value"])
+        name, value = parsed_edit(str(row["field"]), row["value"])
         return Edit.model_validate({**row, "field": name, "value": value})
     except WrongEdit as fault:
         raise BadInput(f"{at}: {fault}") from fault
@@ -138,7 +138,7 @@ def _row(edit: Edit) -> dict[str, Any]:
     return {"field": edit.field, "value": value, "who": edit.who, "when": when, "why": edit.why}
 
 
-def merged(before: Sequence[Edit], new: Sequence[Edit]) -> tuple[Edit, ...]:
+def with_new_edits(before: Sequence[Edit], new: Sequence[Edit]) -> tuple[Edit, ...]:
     """The history with new edits behind; those that change nothing are left out."""
     found = list(before)
     for edit in new:
@@ -148,7 +148,7 @@ def merged(before: Sequence[Edit], new: Sequence[Edit]) -> tuple[Edit, ...]:
     return tuple(found)
 
 
-def undone(edits: Sequence[Edit]) -> tuple[Edit, ...]:
+def without_last_edits(edits: Sequence[Edit]) -> tuple[Edit, ...]:
     """The history without what was given last: all edits of that moment."""
     return tuple(e for e in edits if e.when != edits[-1].when) if edits else ()
 

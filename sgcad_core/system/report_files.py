@@ -1,4 +1,4 @@
-"""Files of a report, read as what a stranger may have sent: regular files inside the report's folder, and no others.
+"""Files of a report from an untrusted source: only regular files inside the report's folder are read.
 
 A link that leads out of the folder would copy a private file into the results; a pipe or a device would never end.
 Knows the file system; no format.
@@ -18,7 +18,7 @@ MAX_FILES = 1000
 LOCK = ".lock"
 """Suffix of lock files."""
 FACTS = "facts.yaml"
-"""What people know better than the reading of a report, beside it (`sgcad_core.revision`)."""
+"""The file of edits, beside a report (`sgcad_core.revision`)."""
 
 
 def facts_file(source: Path) -> Path:

@@ -1,4 +1,4 @@
-"""A function in a process of its own, which may die without taking the batch along.
+"""A function in a process of its own, which may die without ending the batch.
 
     worker = Worker("plugins.simulator.libsumo:replay")       # starts nothing yet
     result = worker.call(net_xml, steps, timeout_s=30)         # replay(net_xml, steps) over there

@@ -23,7 +23,7 @@ from sgcad_core.formats.openscenario.playing.families import Family
 from sgcad_core.formats.openscenario.playing.positions import POSITIONS
 from sgcad_core.formats.openscenario.reading.variation import STOCHASTIC
 from sgcad_core.formats.openscenario.roads.shapes import SHAPES
-from sgcad_core.formats.openscenario.writing.events import Handover
+from sgcad_core.formats.openscenario.writing.events import EventOptions
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.records.specs import BehaviorSpec
 
@@ -177,7 +177,7 @@ def written_elements() -> set[str]:
     spoken = {"id": "V1", "kind": "car", "road": "S", "direction": "forward", "maneuver": "straight"}
     behavior = BehaviorSpec.model_validate({"actors": [spoken], "light": "dark", "weather": "rain", "surface": "wet"})
     touch = ObservedContact(actor="V1", other="V2", actor_area="front", other_area="back", t_s=5.0)
-    texts = [write_xosc(actors, motions, behavior, handover=way) for way in (None, Handover(touch, _MAP))]
+    texts = [write_xosc(actors, motions, behavior, handover=way) for way in (None, EventOptions(touch, _MAP))]
     return {str(e.tag) for text in texts for e in etree.fromstring(text.encode()).iter() if isinstance(e.tag, str)}
 
 

@@ -28,7 +28,7 @@ from sgcad_core.errors import SgcadError
 from sgcad_core.execution.contact import realised
 from sgcad_core.execution.event_encoding import write_editable
 from sgcad_core.execution.playback import execution_of, played
-from sgcad_core.formats.openscenario.writing.events import Handover
+from sgcad_core.formats.openscenario.writing.events import EventOptions
 from sgcad_core.formats.openscenario.writing.writer import DEFAULT_VERSION, Version
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.interfaces import Simulator
@@ -113,7 +113,7 @@ def _events(case: Path, version: Version) -> tuple[tuple[Trajectory, ...], Scena
     scenario = Scenario(actors=actors, declared=Contact.model_validate(declared) if declared else None)
     plan = tuple(case_folder.read_trajectories(case / "trajectories.csv"))
     contact = execution_of("plan", scenario, plan).contact
-    text = write_editable(actors, plan, None, Handover(contact, network.xodr), version)
+    text = write_editable(actors, plan, None, EventOptions(contact, network.xodr), version)
     return plan, scenario.model_copy(update={"xosc": text}), network
 
 

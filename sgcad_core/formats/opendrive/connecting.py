@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sgcad_core.formats.opendrive.geometry import Pose, cubic_lengths, hermite, wrap
-from sgcad_core.formats.opendrive.streets import Street, Strip
+from sgcad_core.formats.opendrive.streets import RoadLane, Street
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 from sgcad_core.roads.lane_graph import Connection
 
@@ -27,7 +27,7 @@ _BASIS = np.column_stack(((1 + 2 * _P) * (1 - _P) ** 2, _P * (1 - _P) ** 2, _P**
 """Hermite basis: first point, first tangent, last point, last tangent."""
 
 
-class Way(NamedTuple):
+class ConnectingCurve(NamedTuple):
     """A connecting road's geometry: a cubic from `start` (aU bU cU dU aV bV cV dV, normalized), None: straight."""
 
     start: Pose
@@ -43,9 +43,9 @@ class Connector(NamedTuple):
     connection: Connection
     came: Street
     goes: Street
-    incoming: Strip
-    outgoing: Strip
-    way: Way
+    incoming: RoadLane
+    outgoing: RoadLane
+    way: ConnectingCurve
 
     @property
     def widths(self) -> tuple[float, float]:
@@ -57,15 +57,15 @@ class Connector(NamedTuple):
         )
 
 
-def way(start: Pose, end: Pose, via: Floats) -> Way:
+def connecting_curve(start: Pose, end: Pose, via: Floats) -> ConnectingCurve:
     """The way from pose to pose that lies nearest to (n, 2) points of SUMO's internal lane."""
     distance = math.dist(start[:2], end[:2])
     aside = _aside(start, end)
     if abs(wrap(end.heading_rad - start.heading_rad)) < STRAIGHT_RAD and abs(aside) < STRAIGHT_M and distance > 0:
-        return Way(start, None, distance)
+        return ConnectingCurve(start, None, distance)
     tangents = _tangents(start, end, via)
     cubic = hermite(start, end, tangents)
-    return Way(start, cubic, float(cubic_lengths(np.array([cubic]), np.ones(1))[0]))
+    return ConnectingCurve(start, cubic, float(cubic_lengths(np.array([cubic]), np.ones(1))[0]))
 
 
 def _aside(start: Pose, end: Pose) -> float:

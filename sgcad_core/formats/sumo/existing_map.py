@@ -67,7 +67,7 @@ def _converted(file: Path, flags: Sequence[str], folder: Path) -> list[str]:
 
 
 def _restore(xodr: Element, nodes: Element, edges: Element, links: Element) -> None:
-    """Signs, two-way left-turn lanes and lanes that merge of an OpenDRIVE file, which netconvert passes over."""
+    """Adds signs, two-way left-turn lanes and merging lanes of an OpenDRIVE file, which netconvert ignores."""
     known = {edge.get("id") for edge in edges.iterfind("edge")}
     there = {(c.get("from"), c.get("fromLane"), c.get("to"), c.get("toLane")) for c in links.iterfind("connection")}
     for came, lane, goes, goal in sorted(lane_links(xodr)):
@@ -88,7 +88,7 @@ def _restore(xodr: Element, nodes: Element, edges: Element, links: Element) -> N
 
 
 def _restore_lanes(edge: Element, drawn: list[Element]) -> None:
-    """Widths, which netconvert writes into no plain XML where all lanes have one; who may use a center lane."""
+    """Sets widths, which netconvert omits where all lanes have one, and the vehicle class of a center lane."""
     there = {int(lane.get("index")): lane for lane in edge.iterfind("lane")}
     for index, source in enumerate(drawn[: int(edge.get("numLanes", 1))]):
         lane = there[index] if index in there else etree.SubElement(edge, "lane", index=str(index))

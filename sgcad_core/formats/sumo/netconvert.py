@@ -1,7 +1,7 @@
 """SUMO's netconvert as a process: plain XML in, road network out.
 
 Nothing in the plain XML is trusted: the schema is checked first (negative lane numbers crash netconvert),
-and a death by its own fault is a result, not an exception. What others did to it (a kill, a full disk) says nothing of
+and a crash of its own is a result, not an exception. A kill or a full disk says nothing of
 the network and is an exception: the case fails, and is tried again. Knows no plugin.
 """
 
@@ -47,7 +47,7 @@ def compile_network(plain: PlainXml, spec: RoadSpec | None = None) -> RoadNetwor
 
     Bad content leaves net_xml and xodr None, `log` says why and `returncode` is not 0 (negative: the
     signal netconvert died of; 124: it took longer than 60 s). Raises MissingTool, SimulationFailed (killed, disk full).
-    The last few that compiled are remembered: who changes an actor of a case has its network already.
+    The last few networks are kept, since an edit of an actor leaves the network as it is.
     """
     if findings := xsd_findings(plain):
         log = "\n".join(f.line() for f in findings)

@@ -72,7 +72,7 @@ _TYPES: Mapping[NodeControl, str] = {
 def plain_xml(spec: RoadSpec, told: Mapping[str, ToldRoad] | None = None) -> PlainXml:
     """Write a spec as plain XML. Raises InvalidOutput with findings where its references do not hold.
 
-    `told`: road id -> what the report tells of it; a road without an entry has the limit that its spec states.
+    `told`: road id -> facts of the report; a road without an entry has the limit of its spec.
     """
     if findings := spec_findings(spec):
         raise InvalidOutput.of(*findings)

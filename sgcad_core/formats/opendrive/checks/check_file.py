@@ -1,4 +1,4 @@
-"""What is wrong with an OpenDRIVE file.
+"""Checks of an OpenDRIVE file.
 
 Schema 1.7 (from the installed scenariogeneration package), references, lane links, lengths and gaps: what
 ASAM's rules demand of a network, so that a bad file is known before another tool meets it.
@@ -13,13 +13,13 @@ from itertools import pairwise
 
 from sgcad_core.case.records import Finding
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.opendrive.checks.check_control import control_findings
 from sgcad_core.formats.opendrive.geometry import Pose, arc_lengths_of, end_pose, geometries, number, start_pose
 from sgcad_core.formats.opendrive.lanes import border_t, contact_pose, lane_offset, lane_widths
 from sgcad_core.formats.xml import Element, asam_schema, parse_xml, schema_errors
 
-_finding = Finder("opendrive")
+_finding = FindingFactory("opendrive")
 
 GAP_M = 0.01
 LENGTH_M = 0.001
@@ -27,7 +27,7 @@ LENGTH_M = 0.001
 _NETCONVERT = "draw the junction less sharp or the roads longer"
 
 
-# ------------------------------------------------------------------ what is wrong
+# ------------------------------------------------------------------ findings
 def xodr_findings(xodr: str) -> list[Finding]:
     """Schema faults first; where it holds, references, links, lengths and gaps, then signals. Empty is a pass."""
     try:
