@@ -58,9 +58,9 @@ deterministic and stochastic parameter distributions (each set is played); maps 
 arcs, spirals, poly3, paramPoly3, several lane sections, lane offsets, borders, junctions, left- and right-hand traffic.
 Motion is plane: elevation, pitch and roll are left out.
 
-A stranger's file gets what other players let pass as a note: a place beyond a road's end (the end is taken), a signed
-rate, a box without size, an entity without a place, an undeclared parameter in a condition, an empty action. In files
-of our own the same are faults.
+In third-party files, what other players accept gives a note: a place beyond a road's end (the end is taken), a signed
+rate, a box without size, an entity without a place, an undeclared parameter in a condition, an empty action. In own
+files the same are faults.
 """
 
 
@@ -116,7 +116,7 @@ DIFFERENCES: dict[str, str] = {
     "`TeleportAction` in the story": "esmini holds an entity still in the step of its teleport; ours goes on at once: "
     "one step of motion, 0.6 m at 56 m/s and steps of 0.01 s",
     "`SynchronizeAction`": "esmini takes its own and the master's speed along the road's reference line, also where "
-    "somebody crosses the road; ours along the way that is gone. Where the speed of the moment leads there by no even "
+    "an entity crosses the road; ours along the way that is gone. Where the speed of the moment leads there by no even "
     "change, esmini begins at another speed at once; ours changes it evenly in two phases",
     "`TimeHeadwayCondition`, alongRoute": "esmini measures as the crow flies, between boxes or origins; ours along the "
     "road, as version 1.0 says: what follows begins some steps earlier or later in a bend or beside another lane",

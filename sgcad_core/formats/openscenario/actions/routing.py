@@ -17,9 +17,7 @@ from sgcad_core.formats.openscenario.roads.way import LanePlace, Route
 
 ROUTING: Family[ActionStart] = Family("routing action")
 PRIVATE.plays("RoutingAction")(lambda node: nested(ROUTING, node))
-ROUTING.refuses(
-    "RandomRouteAction", remark="the ways it draws are nobody's but the simulator's", remedy="assign a route"
-)
+ROUTING.refuses("RandomRouteAction", remark="its random routes are the simulator's own", remedy="assign a route")
 _FOLLOW = "followingMode 'follow' is driven exactly on the path: the standard leaves the steering to the simulator"
 _REMARK = (
     "followingMode 'follow' is driven exactly on the path, at even accelerations between timed vertices, with a note"
