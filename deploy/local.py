@@ -7,7 +7,6 @@ every result, database and log. Nothing listens beyond this machine.
 from __future__ import annotations
 
 import argparse
-import fcntl
 import os
 import signal
 import socket
@@ -28,6 +27,7 @@ from flows.deploy import health
 from flows.deploy.health import Running
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool, SgcadError
+from sgcad_core.system.locks import lock_file
 
 START_S = 240.0
 """First start of MLflow and Prefect: databases are made, 20 s on two idle cores, minutes on busy ones."""
@@ -189,8 +189,7 @@ def stop(running: Running) -> None:
 def _alone(folder: Path) -> Iterator[Path]:
     """One `up` or `down` at a time; the next waits."""
     folder.mkdir(parents=True, exist_ok=True)
-    with (folder / ".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+    with lock_file(folder / ".lock"):
         yield folder
 
 

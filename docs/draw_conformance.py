@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sgcad_core.formats.openscenario.conformance import page
+from research.benchmarks.scenes.conformance import page
 
 if __name__ == "__main__":
     (Path(__file__).parent / "conformance.md").write_text(page(), encoding="utf-8")

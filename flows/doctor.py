@@ -22,7 +22,7 @@ from flows.server import prefect_server
 from flows.terminal import escape
 from sgcad_core import settings
 from sgcad_core.errors import SgcadError
-from sgcad_core.system.temp_folders import left, scratch
+from sgcad_core.system.temp_folders import leftover_folders, temp_folder
 
 PACKAGES = (
     "prefect", "mlflow", "torch", "transformers", "eclipse-sumo", "libsumo", "scenariogeneration", "lancedb",
@@ -176,7 +176,7 @@ def _database(out: Path) -> str:
 
     tracker = cast("Tracker", plugin_class("tracker", "mlflow")())
     result = {"status": "generated", "seconds": {}}
-    with scratch("doctor") as place:
+    with temp_folder("doctor") as place:
         case = place / "config" / "case"
         (case / "attempts").mkdir(parents=True)
         tracker.log_case("doctor", {}, case, result)
@@ -186,7 +186,7 @@ def _database(out: Path) -> str:
 def _leftovers(out: Path) -> str:
     processes = [str(p.pid) for p in _orphans()]
     partial = [str(p) for p in out.glob(f"*/{case_folder.PARTIAL}*")] if out.is_dir() else []
-    counted = {"half-written case folders": len(partial), "temporary folders": len(left())}
+    counted = {"half-written case folders": len(partial), "temporary folders": len(leftover_folders())}
     found = [f"{count} {what}" for what, count in counted.items() if count]
     lying = f"{' and '.join(found)} of killed or running batches; the next batch clears them" if found else ""
     if processes:

@@ -13,7 +13,7 @@ from pathlib import Path
 import yaml
 
 from sgcad_core.errors import ConfigError
-from sgcad_core.near_names import nearest
+from sgcad_core.near_names import did_you_mean
 from sgcad_core.registry import KINDS, catalogue
 from sgcad_core.system import extends
 
@@ -56,7 +56,7 @@ BASE = "template.yaml"
 def new(kind: str, name: str, into: Path) -> list[Path]:
     """Write the package `<into>/sgcad-<name>`; its files. Raises ConfigError: kind, name or folder is no good."""
     if kind not in KINDS:
-        raise ConfigError(f"unknown kind {kind!r}.{nearest(kind, KINDS)} Kinds: {', '.join(KINDS)}")
+        raise ConfigError(f"unknown kind {kind!r}.{did_you_mean(kind, KINDS)} Kinds: {', '.join(KINDS)}")
     if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
         raise ConfigError(f"name {name!r}: small letters, digits and _, a letter first, such as my_{kind}")
     if name in catalogue(kind):

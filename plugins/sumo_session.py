@@ -13,7 +13,7 @@ from pathlib import Path
 
 import libsumo
 
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 QUIET = ("--no-step-log", "true", "--duration-log.disable", "true")
 AS_TOLD = ("--time-to-teleport", "-1", "--xml-validation", "never")
@@ -24,7 +24,7 @@ FAULTS = (libsumo.TraCIException, libsumo.FatalTraCIError, RuntimeError)
 
 def start(options: tuple[str, ...], net_xml: str, routes_xml: str = "", step_s: float | None = None) -> None:
     """Starts SUMO on a network and vehicle types, of which it reads all at once. Raises libsumo's errors."""
-    with scratch("sumo") as folder:
+    with temp_folder("sumo") as folder:
         libsumo.start(_command(folder, options, net_xml, routes_xml, step_s))
 
 
@@ -33,7 +33,7 @@ def running(
     options: tuple[str, ...], net_xml: str, routes_xml: str = "", step_s: float | None = None
 ) -> Iterator[None]:
     """SUMO on a network and, if given, a route file, which it reads as it runs; closed at the end of the block."""
-    with scratch("sumo") as folder:
+    with temp_folder("sumo") as folder:
         try:
             libsumo.start(_command(folder, options, net_xml, routes_xml, step_s))
             yield

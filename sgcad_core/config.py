@@ -31,7 +31,7 @@ from sgcad_core.interfaces import (
     Validator,
 )
 from sgcad_core.kinds import CrashRole
-from sgcad_core.near_names import nearest
+from sgcad_core.near_names import did_you_mean
 from sgcad_core.records.second_reader import LEARNED
 from sgcad_core.registry import plugin_class
 from sgcad_core.system import extends
@@ -152,7 +152,7 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
         try:
             config = Config(name=name, raw=raw, **fields)
         except ValidationError as fault:
-            faults += config_faults.lines("", fault, Config)
+            faults += config_faults.fault_lines("", fault, Config)
     if config is None:
         raise ConfigError("\n".join([f"{where}: {len(faults)} fault(s)", *(f"  {f}" for f in faults)]))
     return config
@@ -161,7 +161,7 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
 def _unknown(key: str, known: set[str]) -> str:
     if key == extends.KEY:
         return f"{key}: names a base in a YAML only: it is read before --set, which cannot change it"
-    return f"{key}: {config_faults.unknown('key', key, sorted({*known, extends.KEY}))}"
+    return f"{key}: {config_faults.unknown_name('key', key, sorted({*known, extends.KEY}))}"
 
 
 def _plugin(kind: str, entry: Any, path: str, faults: list[str]) -> Plugin | None:
@@ -178,7 +178,7 @@ def _plugin(kind: str, entry: Any, path: str, faults: list[str]) -> Plugin | Non
     try:
         return found(**{str(k): v for k, v in entry.items() if k != "name"})
     except ValidationError as fault:
-        faults += config_faults.lines(path, fault, found)
+        faults += config_faults.fault_lines(path, fault, found)
     return None
 
 
@@ -213,7 +213,7 @@ def _drive(entry: Any, faults: list[str]) -> DriveStage | None:
     try:
         return DriveStage(drivers=tuple(cast("list[DriverEntry]", drivers)), **raw)
     except ValidationError as fault:
-        faults += config_faults.lines("drive", fault, DriveStage)
+        faults += config_faults.fault_lines("drive", fault, DriveStage)
     return None
 
 
@@ -252,7 +252,7 @@ def _find(path: Path) -> Path:
             return file
     found = sorted(f.relative_to(settings.CONFIGS) for f in settings.CONFIGS.rglob("*.yaml"))
     known = {str(f.with_suffix("")): str(f) for f in found if f.parts[0] != "studies"}
-    meant = nearest(str(path.with_suffix("")), known)
+    meant = did_you_mean(str(path.with_suffix("")), known)
     raise ConfigError(f"{path}: no such config.{meant} In configs/: {', '.join(known.values())}")
 
 

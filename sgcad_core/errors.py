@@ -16,7 +16,7 @@ A message says what, the value, the limit and the remedy. Knows nothing else of 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,6 +46,11 @@ class InvalidOutput(SgcadError):
     def __init__(self, message: str, findings: Sequence[Finding] = ()) -> None:
         super().__init__(message)
         self.findings = tuple(findings)
+
+    @classmethod
+    def of(cls, *findings: Finding) -> Self:
+        """The error of these findings, one line each."""
+        return cls("\n".join(finding.line() for finding in findings), findings)
 
 
 class Unsupported(InvalidOutput):
@@ -78,9 +83,9 @@ class SimulationFailed(SgcadError):
 
 
 class ProcessDied(SimulationFailed):
-    """A worker process was killed or crashed before its time was over; whoever killed it need not be the report.
+    """A worker process was killed or crashed within its time limit; the report need not be the cause.
 
-    `from_outside`: a signal ended it that no crash sends: somebody's kill, or the system's want of memory.
+    `from_outside`: a signal that no crash sends ended it: a kill, or the system's lack of memory.
     """
 
     def __init__(self, message: str, *, from_outside: bool = False) -> None:

@@ -1,4 +1,4 @@
-"""What is wrong, written so that a model or a person can act on it, and what the next answer is held to because of it.
+"""Findings: faults that a model or a person can act on, and the restrictions of the next answer that follow from them.
 
 Knows no case, no file and no validator.
 """
@@ -71,7 +71,7 @@ class Finding(Record):
 
 
 @dataclass(frozen=True)
-class Finder:
+class FindingFactory:
     """Makes one source's findings: `_finding = Finder("topology")`, then `_finding(what, where, value, remedy)`."""
 
     source: str

@@ -1,5 +1,5 @@
-"""Plugins that others wrote: whether a class keeps its kind's form, whether an entry point leads anywhere, and what
-its code is, as a fingerprint for cache keys.
+"""Checks of third-party plugins: the interface of a class, the target of an entry point, and a fingerprint of the
+code for cache keys.
 
 Knows classes and files; imports nothing by itself.
 """
@@ -20,12 +20,12 @@ from pydantic import BaseModel
 OWN = frozenset({"sgcad_core", "plugins", "flows", "research"})
 """Packages whose code and versions are part of every cache key anyway."""
 MAX_FILES = 2000
-"""Files of a stranger's package that are read for its fingerprint; of a larger one only the plugin's own module."""
+"""Most files of a third-party package in its fingerprint; of a larger one only the plugin's own module."""
 STAGES = ("road", "scenario", "both")
 
 
-def faults(found: type[BaseModel], base: type[BaseModel]) -> list[str]:
-    """What a plugin class lacks of its kind's form, each with the line that mends it; empty: nothing."""
+def class_faults(found: type[BaseModel], base: type[BaseModel]) -> list[str]:
+    """Faults of a plugin class against its kind's interface, each with the line that corrects it."""
     told = [
         f"the method {name!r} is missing: write `def {name}(self, ...)` as {base.__name__} in interfaces.py has it"
         for name in sorted(getattr(found, "__abstractmethods__", ()))
@@ -48,7 +48,7 @@ def _example(name: str, kind: type) -> str:
     )
 
 
-def leads_somewhere(point: EntryPoint) -> bool:
+def names_a_class(point: EntryPoint) -> bool:
     """Whether an entry point's module exists and names its class, as far as its source tells; imports no plugin."""
     try:
         spec = importlib.util.find_spec(point.module)
@@ -77,8 +77,8 @@ def _names(tree: ast.Module) -> set[str]:
     return found
 
 
-def code_of(plugin: type) -> str:
-    """Distribution, version and digest of the code of a stranger's plugin class and its bases; empty for our own."""
+def code_fingerprint(plugin: type) -> str:
+    """Distribution, version and digest of a third-party plugin class and its bases; empty for built-in ones."""
     tops = {base.__module__: None for base in plugin.__mro__ if not _is_ours(base.__module__)}
     return "; ".join(_about(module) for module in tops)
 

@@ -114,7 +114,7 @@ class Backbone(Plugin):
         """
 
     def weights_gb(self) -> float | None:
-        """Memory that its weights will take on this machine, decimal GB; None: none here, or nobody can tell."""
+        """Memory that its weights will take on this machine, decimal GB; None: none here, or unknown."""
         return None
 
 
@@ -201,7 +201,7 @@ class Tracker(Plugin):
         return
 
     def begin(self, arm: Arm) -> None:
-        """Told before the first case of a config; the default keeps nothing."""
+        """Called before the first case of a config; the default keeps nothing."""
         return
 
     @abstractmethod
@@ -218,12 +218,12 @@ class Tracker(Plugin):
         return ""
 
     def end(self, arm: Arm, finished: bool) -> None:
-        """Told after the last case; `finished` is false after an interruption and where a fault ended the batch
+        """Called after the last case; `finished` is false after an interruption and where a fault ended the batch
         (`arm.fault` says which). The default keeps nothing."""
         return
 
     def identity(self, out: Path) -> str:
-        """What tells the place where it logs from another one at the same address; made anew, it has another one.
+        """Identifies the place where it logs; a place that is made anew at the same address has another identity.
 
         Cheap, and makes nothing: it is asked for every case, to see whether that case is logged there. Default: "".
         """

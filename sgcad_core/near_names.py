@@ -1,4 +1,4 @@
-"""What a person may have meant by a name that is not known. Pure functions on text."""
+"""Suggestions for unknown names. Pure functions on text."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Iterable
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
+def did_you_mean(name: str, known: Iterable[str]) -> str:
     """' Did you mean 'x'?' with the known name that is most like the given one; empty if none is like it."""
     by_case = {k.casefold(): k for k in known}
     near = difflib.get_close_matches(name.casefold(), by_case, n=1)

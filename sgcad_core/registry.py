@@ -1,6 +1,6 @@
 """The plugin catalogue: entry points, read once, imported when named.
 
-Built-ins come through the same door as strangers (`sgcad.<kind>` groups). Knows no plugin.
+Built-in and third-party plugins are found in the same way (`sgcad.<kind>` groups). Knows no plugin.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pydantic import PydanticUserError
 
 from sgcad_core import foreign_plugins, interfaces
 from sgcad_core.errors import ConfigError
-from sgcad_core.near_names import nearest
+from sgcad_core.near_names import did_you_mean
 
 if TYPE_CHECKING:
     from sgcad_core.interfaces import Plugin
@@ -41,17 +41,19 @@ def plugin_class(kind: str, name: str) -> type[Plugin]:
     """Import one plugin. Raises ConfigError naming the nearest and all installed names."""
     known = catalogue(kind)
     if name not in known:
-        raise ConfigError(f"unknown {kind} {name!r}.{nearest(name, known)} Installed: {', '.join(known) or 'none'}")
+        raise ConfigError(
+            f"unknown {kind} {name!r}.{did_you_mean(name, known)} Installed: {', '.join(known) or 'none'}"
+        )
     found, where = _imported(kind, name, known[name]), f"{kind} {name!r} ({known[name].value})"
     if not (isinstance(found, type) and issubclass(found, BASES[kind])):
         raise ConfigError(f"{where} is no {BASES[kind].__name__}: derive it from that class")
-    if lacks := foreign_plugins.faults(found, BASES[kind]):
+    if lacks := foreign_plugins.class_faults(found, BASES[kind]):
         raise ConfigError(f"{where}: {'; '.join(lacks)}")
     return found
 
 
 def _imported(kind: str, name: str, point: EntryPoint) -> object:
-    """What an entry point names. A stranger's module may fail in any way: each is told as its author's fault."""
+    """The object that an entry point names. Any failure of a third-party module is reported as its fault."""
     where = f"{kind} {name!r} ({point.value})"
     try:
         return point.load()
@@ -74,4 +76,4 @@ def _plainly(fault: PydanticUserError) -> str:
 
 def installed(kind: str) -> dict[str, EntryPoint]:
     """Plugins of a kind whose module and class are there; imports none of them."""
-    return {name: point for name, point in catalogue(kind).items() if foreign_plugins.leads_somewhere(point)}
+    return {name: point for name, point in catalogue(kind).items() if foreign_plugins.names_a_class(point)}

@@ -1,4 +1,4 @@
-"""result.json: what one case came to, in the stable form that scripts rely on.
+"""result.json: the result of one case in the stable form that scripts rely on.
 
 Pure functions on records; knows the .net.xml reader for counting roads. Writes no file.
 """
@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 from sgcad_core.account import Account, Note, account_of
-from sgcad_core.account.inputs import Made
+from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.notes import notes_of
-from sgcad_core.case.records import ActorInfo, Execution, Fact, Generation, RoadNetwork, Scenario, StageOutcome
+from sgcad_core.case.records import Execution, Fact, Generation, RoadNetwork, Scenario, StageOutcome
 from sgcad_core.execution.compare_executions import Judgement
 from sgcad_core.execution.contact import avoided, closest_approach, first_with, realised
 from sgcad_core.execution.playback import sizes_of
@@ -75,7 +75,7 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
     """The content of result.json, JSON-able."""
     status, reason, missing = _end(record)
     judged = {"judge": record.judgement.summary()} if record.judgement else {}
-    facts, notes = facts_of(record), notes_told(record)
+    facts, notes = facts_of(record), case_notes(record)
     return {
         "case": record.case,
         "config": record.config,
@@ -84,7 +84,7 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
         "missing": list(missing),
         "attempts": {s: len(record.outcomes[s].attempts) if s in record.outcomes else 0 for s in STAGES},
         "network": _network(record.network),
-        "actors": [_actor(actor) for actor in record.scenario.actors] if record.scenario else [],
+        "actors": [actor.model_dump() for actor in record.scenario.actors] if record.scenario else [],
         "collision": _collision(record.scenario, record.execution),
         "near_crash": _near_crash(record.scenario, record.execution),
         **judged,
@@ -93,7 +93,7 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
         "redactions": redactions(record.places),
         "facts": [fact.model_dump(mode="json") for fact in facts],
         "seconds": seconds_of(record),
-        "account": account_told(record, status, facts, notes).summary(),
+        "account": case_account(record, status, facts, notes).summary(),
         "notes": [note.model_dump(mode="json") for note in notes],
     }
 
@@ -155,7 +155,7 @@ def _end(record: CaseRecord) -> tuple[Status, str, Sequence[str]]:
 
 
 def _subject_untouched(record: CaseRecord) -> bool:
-    """Whether the report tells a contact of its subject and none comes about; asked where reports number nobody."""
+    """Whether the report states a contact of its subject and none occurs; only for reports without vehicle numbers."""
     crash = record.reading.crash if record.reading else None
     if crash is None or record.scenario is None or record.execution is None or not crash.unnumbered:
         return False
@@ -179,16 +179,6 @@ def _network(network: RoadNetwork | None) -> dict[str, Any] | None:
         "components": figures.components,
         "mean_lanes": round(figures.mean_lanes, 4),
         "segments": segments(graph),
-    }
-
-
-def _actor(actor: ActorInfo) -> dict[str, Any]:
-    return {
-        "id": actor.id,
-        "type": actor.type,
-        "length_m": actor.length_m,
-        "width_m": actor.width_m,
-        "maneuver": actor.maneuver,
     }
 
 
@@ -244,16 +234,16 @@ def _grounding(outcomes: Mapping[str, StageOutcome]) -> dict[str, float]:
     return found
 
 
-def account_told(record: CaseRecord, status: Status, facts: Sequence[Fact], notes: Sequence[Note]) -> Account:
-    """What is told and there, told and lacking, assumed; of a case that is not generated nothing is there to say."""
+def case_account(record: CaseRecord, status: Status, facts: Sequence[Fact], notes: Sequence[Note]) -> Account:
+    """The account of a case; empty for a case that is not generated."""
     network, scenario, execution, reading = record.network, record.scenario, record.execution, record.reading
     if status != "generated" or not (network and network.net_xml and scenario and execution and reading):
         return account_of(None, facts)
-    return account_of(Made(reading, network, scenario, execution, record.drawn), facts, notes)
+    return account_of(ExecutedCase(reading, network, scenario, execution, record.drawn), facts, notes)
 
 
-def notes_told(record: CaseRecord) -> list[Note]:
-    """What every step remarked, in their order."""
+def case_notes(record: CaseRecord) -> list[Note]:
+    """The remarks of all steps, in order."""
     told = [attempt for outcome in record.outcomes.values() if (attempt := outcome.told_by)]
     facts = {fact.field: fact for fact in record.reading.facts} if record.reading else {}
     notes = notes_of("reader", record.notes, facts)

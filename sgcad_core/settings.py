@@ -1,4 +1,4 @@
-"""Where things lie and what the environment says; the only module that reads or writes os.environ.
+"""Paths and environment variables; the only module that reads or writes os.environ.
 
 `quiet_libraries()` must run before prefect, mlflow or transformers is imported.
 """
@@ -25,7 +25,7 @@ _QUIET = {
     "PREFECT_SERVER_ANALYTICS_ENABLED": "false",
     "DO_NOT_TRACK": "1",
     "MLFLOW_DISABLE_TELEMETRY": "true",
-    "MLFLOW_HTTP_REQUEST_MAX_RETRIES": "3",  # its own 7 tell after four minutes that nobody answers
+    "MLFLOW_HTTP_REQUEST_MAX_RETRIES": "3",  # its own 7 report a missing server after four minutes
     "MLFLOW_HTTP_REQUEST_TIMEOUT": "30",
     "MLFLOW_SUPPRESS_PRINTING_URL_TO_STDOUT": "true",  # standard output is for the answer
     "TOKENIZERS_PARALLELISM": "false",
@@ -113,7 +113,7 @@ def program(name: str, path: str, variable: str, source: str) -> Path:
 
 
 def plain_environment() -> dict[str, str]:
-    """What a program of somebody else's needs of the environment: where things are, no keys."""
+    """The environment of a third-party program: paths, no keys."""
     return {name: os.environ[name] for name in ("PATH", "HOME", "LANG", "LD_LIBRARY_PATH") if name in os.environ}
 
 

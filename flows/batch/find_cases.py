@@ -19,7 +19,7 @@ from pathlib import Path
 from sgcad_core import settings
 from sgcad_core.config import Config
 from sgcad_core.errors import BadInput, ConfigError
-from sgcad_core.foreign_plugins import code_of
+from sgcad_core.foreign_plugins import code_fingerprint
 from sgcad_core.interfaces import Plugin
 from sgcad_core.records.second_reader import LEARNED, WEIGHTS
 from sgcad_core.system.digest import file_sha256
@@ -174,7 +174,7 @@ def _folder_digest(folder: Path) -> str:
 
 def identity(plugin: Plugin) -> tuple[str, ...]:
     """What makes a plugin's results its own beside its fields: version, stamp, and a stranger's code."""
-    stranger = code_of(type(plugin))
+    stranger = code_fingerprint(type(plugin))
     return (type(plugin).version, plugin.stamp, *([stranger] if stranger else []))
 
 

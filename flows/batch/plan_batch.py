@@ -112,7 +112,7 @@ def batch_over(
             if simulator:
                 simulator.ready()
     out = out.resolve()
-    temp_folders.clear_left()
+    temp_folders.remove_leftover_folders()
     case_folder.check_writable(out)
     for config in configs:
         config.tracker.ready(out)

@@ -12,14 +12,13 @@ Knows the file system, configs and refinement; nothing of studies.
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import json
 import os
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
@@ -40,12 +39,13 @@ from sgcad_core.config import Config
 from sgcad_core.interfaces import Plugin
 from sgcad_core.records import facts, specs
 from sgcad_core.records import second_reader as opinion
+from sgcad_core.system.locks import lock_file
 
 _RECORDS = (evidence, facts, findings, opinion, records, specs, refine, schema_holds, record_json)
 """Where that is defined which a kept step holds, and what it was asked."""
 T = TypeVar("T")
-WAIT_S, LOOK_S = 3600.0, 0.05
-"""How long one waits for another who computes the same, and how often one looks; then one does it oneself."""
+WAIT_S = 3600.0
+"""Longest wait for another process that computes the same; then it is computed here as well."""
 
 
 @dataclass(frozen=True)
@@ -168,20 +168,13 @@ class Shelf:
 
     @contextmanager
     def alone(self, key: str) -> Iterator[None]:
-        """Keep others from computing the same meanwhile. A lock ends with its process, and patience ends too."""
+        """Keeps other processes from computing the same meanwhile, as far as the folder can be written."""
         lock = self._file(key).with_suffix(".lock")
-        try:
-            lock.parent.mkdir(parents=True, exist_ok=True)
-            held = os.open(lock, os.O_RDWR | os.O_CREAT, 0o644)
-        except OSError:
+        with ExitStack() as held:
+            with suppress(OSError):  # among them the end of the wait
+                lock.parent.mkdir(parents=True, exist_ok=True)
+                held.enter_context(lock_file(lock, WAIT_S))
             yield
-            return
-        try:
-            _wait_for(held)
-            yield
-            lock.unlink(missing_ok=True)  # who waits for it looks at the shelf first
-        finally:
-            os.close(held)
 
     def timed(self, key: str, compute: Callable[[], tuple[T, float]]) -> tuple[T, float, bool]:
         """A value, the seconds that it took, and whether it was there already."""
@@ -224,17 +217,6 @@ class Shelf:
 
     def _file(self, key: str) -> Path:
         return self.folder / key[:2] / key
-
-
-def _wait_for(lock: int) -> None:
-    deadline = time.monotonic() + WAIT_S
-    while time.monotonic() < deadline:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            time.sleep(LOOK_S)
-        else:
-            return
 
 
 @dataclass(frozen=True)

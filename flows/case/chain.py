@@ -22,7 +22,7 @@ from flows.case.model_calls import ask_of
 from flows.case.step_log import OnStep, Step, Steps, unheard
 from flows.case.write_case import leave
 from sgcad_core.asking.refine import Call, OnAttempt, Refinement, Write, outcome_of, run_at_once
-from sgcad_core.asking.second_opinion import corrected, seconded, whole
+from sgcad_core.asking.second_opinion import with_gist_opinion, with_learned_opinion, with_model_opinion
 from sgcad_core.case.records import (
     Attempt,
     Context,
@@ -43,7 +43,7 @@ from sgcad_core.metrics import measure
 from sgcad_core.records.edits import Edit
 from sgcad_core.records.second_reader import LEARNED, WHOLE
 from sgcad_core.result import CaseRecord
-from sgcad_core.revision import heeding
+from sgcad_core.revision import overruled_validators
 
 T = TypeVar("T")
 
@@ -136,10 +136,10 @@ class CaseRun:
         if not wanted:
             return report
         if wanted == LEARNED:
-            return self._single("opinion", lambda: corrected(report), report)
+            return self._single("opinion", lambda: with_learned_opinion(report), report)
         if wanted == WHOLE:
-            return self._single("opinion", lambda: whole(report, ask_of(self.config)), report)
-        return self._single("opinion", lambda: seconded(report, wanted, ask_of(self.config)), report)
+            return self._single("opinion", lambda: with_model_opinion(report, ask_of(self.config)), report)
+        return self._single("opinion", lambda: with_gist_opinion(report, wanted, ask_of(self.config)), report)
 
     def _execute(self, scenario: Scenario, network: RoadNetwork) -> None:
         simulator = self.config.simulator
@@ -206,7 +206,7 @@ class CaseRun:
         return Refinement(
             stage=stage,
             write=person_facts.laid_over(write, report, net, writer),
-            validators=heeding(self.config.validators_of(stage), report.edits),
+            validators=overruled_validators(self.config.validators_of(stage), report.edits),
             evidence_of=lambda generation: Evidence(report=report, network=net, generation=generation),
             ask=(self.kept[stage].ask if stage in self.kept else ask_of(self.config)) if writer.asks_model else None,
             max_attempts=1 if stage in self.kept else self.config.max_attempts,

@@ -36,7 +36,7 @@ from sgcad_core.records.edits import Edit, effective
 from sgcad_core.records.facts import Value
 from sgcad_core.records.specs import BehaviorSpec, RoadSpec
 from sgcad_core.result import CaseRecord
-from sgcad_core.revision import lay_road, lay_scenario, read_edits, report_digest
+from sgcad_core.revision import apply_road_edits, apply_scenario_edits, read_edits, report_digest
 from sgcad_core.revision.actors import HEADING_RAD
 from sgcad_core.revision.values import value_of
 from sgcad_core.system.report_files import facts_file
@@ -66,8 +66,8 @@ def laid_over(
     def informed_write(findings: tuple[Finding, ...], ask: Ask, attempt: int) -> Artifact:
         made = write(findings, ask, attempt)
         if isinstance(made, RoadNetwork):
-            return lay_road(made, report.reading, edits)
-        return lay_scenario(made, network, report.reading, edits, **how) if network else made
+            return apply_road_edits(made, report.reading, edits)
+        return apply_scenario_edits(made, network, report.reading, edits, **how) if network else made
 
     return informed_write
 

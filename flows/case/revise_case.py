@@ -34,8 +34,16 @@ from sgcad_core.config import Config, build
 from sgcad_core.errors import BadInput, ConfigError, WrongEdit
 from sgcad_core.records.edits import AS_READ, Edit, effective
 from sgcad_core.result import STAGES, as_declared, result_of
-from sgcad_core.revision import CaseField, by_field, checked, fields_of, read_edits, report_digest, write_edits
-from sgcad_core.revision.file import alone, merged, undone
+from sgcad_core.revision import (
+    CaseField,
+    fields_of,
+    findings_by_field,
+    parsed_edit,
+    read_edits,
+    report_digest,
+    write_edits,
+)
+from sgcad_core.revision.file import facts_lock, with_new_edits, without_last_edits
 from sgcad_core.revision.standing_edits import SOURCE
 from sgcad_core.system.report_files import facts_file
 
@@ -150,9 +158,9 @@ def revise(
     started = time.perf_counter()
     case = opened(folder, report)
     new = _edits(edits, who, why)
-    with alone(case.source):
+    with facts_lock(case.source):
         before = _unchanged(case.edits(), seen)
-        after = merged(before, new)
+        after = with_new_edits(before, new)
         if after == before:
             return _as_it_stands(case, before, started)
         return _written(case, before, after, {edit.field for edit in new}, started)
@@ -162,19 +170,19 @@ def undo(folder: Path, *, seen: str | None = None, report: Path | None = None) -
     """Take the last revision of a case's report back, whoever made it. Raises WrongEdit where there is none."""
     started = time.perf_counter()
     case = opened(folder, report)
-    with alone(case.source):
+    with facts_lock(case.source):
         before = _unchanged(case.edits(), seen)
         if not before:
             raise WrongEdit(f"{case.folder.name}: there is nothing to undo: nobody has changed a fact of it")
-        return _written(case, before, undone(before), set(), started)
+        return _written(case, before, without_last_edits(before), set(), started)
 
 
 def note(source: Path, edits: Given, *, who: str = "", why: str = "") -> tuple[Edit, ...]:
     """Keep facts beside a report without running anything: the next run goes by them. Raises WrongEdit, BadInput."""
     new = _edits(edits, who, why)
-    with alone(source):
+    with facts_lock(source):
         digest = report_digest(source)
-        after = merged(read_edits(facts_file(source), digest), new)
+        after = with_new_edits(read_edits(facts_file(source), digest), new)
         write_edits(facts_file(source), after, digest)
     return effective(after)
 
@@ -186,7 +194,7 @@ def _edits(given: Given, who: str, why: str) -> tuple[Edit, ...]:
     now = datetime.now(UTC)
     for field, raw in given.items():
         try:
-            name, value = checked(field, raw)
+            name, value = parsed_edit(field, raw)
             found.append(Edit(field=name, value=value, who=who or _user(), when=now, why=why[:1000]))
         except WrongEdit as fault:
             faults.append(str(fault))
@@ -227,7 +235,7 @@ def _written(case: Opened, before: tuple[Edit, ...], after: tuple[Edit, ...], ne
         write_edits(case.file, before, report_digest(case.source))
         raise
     specs = person_facts.read_specs(case.folder)
-    said = by_field(findings, specs.road, specs.behavior, after)
+    said = findings_by_field(findings, specs.road, specs.behavior, after)
     return Revised(result, said, effective(after), time.perf_counter() - started, stamp_of(after))
 
 

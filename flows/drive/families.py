@@ -26,13 +26,13 @@ from sgcad_core.config import DriverEntry
 from sgcad_core.errors import BadInput
 from sgcad_core.formats.openscenario.writing.entities import SUNS
 from sgcad_core.formats.openscenario.writing.logical import (
-    Meets,
-    Range,
-    Warp,
-    deterministic,
+    ParameterizedActor,
+    ParameterRange,
+    TimeShift,
+    deterministic_distribution,
     logical_xosc,
-    stochastic,
-    suns,
+    stochastic_distribution,
+    with_sun_parameter,
 )
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.handover.family.discrete_parameters import LIGHTS, PAIR, light_of, unvaried
@@ -91,7 +91,7 @@ def vary(family: Family, count: int, seed: int, look: Search | None = None) -> P
     """
     place = family.folder / "vary" / f"seed-{seed}"
     place.parent.mkdir(parents=True, exist_ok=True)
-    with temp_folders.beside(place) as partial:
+    with temp_folders.folder_beside(place) as partial:
         partial.chmod(0o755)
         _write(family, count, seed, partial)
         if look is not None:
@@ -137,8 +137,8 @@ def files_of(family: Family, sets: Sequence[Mapping[str, float]], seed: int) -> 
     ranges = [_range(p) for p in family.parameters]
     return {
         "logical": _logical(family, ranges, _conditions(family)),
-        "deterministic": deterministic("logical.xosc", sets),
-        "stochastic": stochastic("logical.xosc", ranges, len(sets), seed),
+        "deterministic": deterministic_distribution("logical.xosc", sets),
+        "stochastic": stochastic_distribution("logical.xosc", ranges, len(sets), seed),
     }
 
 
@@ -150,11 +150,13 @@ def _conditions(family: Family) -> BehaviorSpec:
     return BehaviorSpec.model_construct(actors=(), contacts=(), light=light, weather=weather, surface=surface)
 
 
-def _range(p: Parameter) -> Range:
-    return Range(p.name, p.nominal, p.low, p.high, p.mean, p.spread if p.kind == "normal" else 0.0, p.values, p.shares)
+def _range(p: Parameter) -> ParameterRange:
+    return ParameterRange(
+        p.name, p.nominal, p.low, p.high, p.mean, p.spread if p.kind == "normal" else 0.0, p.values, p.shares
+    )
 
 
-def _logical(family: Family, ranges: Sequence[Range], behavior: BehaviorSpec) -> str:
+def _logical(family: Family, ranges: Sequence[ParameterRange], behavior: BehaviorSpec) -> str:
     basis = family.basis
     nominal = undisturbed(basis, {p.name: p.nominal for p in family.parameters})
     shifted = max((float(np.abs(d.linear).max()) for d in basis.delays.values()), default=0.0) * LATER_S
@@ -162,19 +164,21 @@ def _logical(family: Family, ranges: Sequence[Range], behavior: BehaviorSpec) ->
     lit = any(p.name == "light" for p in family.parameters)
     seen = behavior.model_copy(update={"light": LIGHTS[0]}) if lit else behavior
     text = write_xosc(nominal.actors, with_earlier_start(nominal, back), seen, "../../road.xodr", "logical")
-    text = suns(text, "light", [SUNS[light] for light in LIGHTS]) if lit else text
+    text = with_sun_parameter(text, "light", [SUNS[light] for light in LIGHTS]) if lit else text
     everybody = [_meets(basis, t.actor, back) for t in nominal.trajectories]
     return logical_xosc(text, ranges, everybody, basis.contact_s)
 
 
-def _meets(basis: FamilyBasis, actor: str, back: float) -> Meets:
+def _meets(basis: FamilyBasis, actor: str, back: float) -> ParameterizedActor:
     """How an actor's motion in the logical file depends on the parameters, as `variant` has it."""
     who = basis.owner(actor)
     lanes = (f"{who}_lane_m", *((f"{PAIR}_lane_m",) if who in basis.coupled else ()))
     other, per_m = basis.crossed.get(who, ("", 0.0))
     delay = basis.delays.get(who)
-    warp = Warp(f"{who}_reaction_s", delay.t_s + back, delay.linear, delay.square, delay.cube) if delay else None
-    return Meets(actor, basis.contact_s + back, lanes, ((f"{other}_lane_m", per_m),) if per_m else (), warp)
+    warp = TimeShift(f"{who}_reaction_s", delay.t_s + back, delay.linear, delay.square, delay.cube) if delay else None
+    return ParameterizedActor(
+        actor, basis.contact_s + back, lanes, ((f"{other}_lane_m", per_m),) if per_m else (), warp
+    )
 
 
 def _manifest(

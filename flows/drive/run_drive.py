@@ -114,7 +114,7 @@ def _one(told: _Told, order: Order, entry: DriverEntry, role: str, target: Path,
 def _leave(driven: Drive, told: Mapping[str, Any], target: Path, order: Order) -> None:
     """The drive's files, whole or not at all."""
     target.parent.mkdir(parents=True, exist_ok=True)
-    with temp_folders.beside(target) as partial:
+    with temp_folders.folder_beside(target) as partial:
         partial.chmod(0o755)
         case_folder.write_trajectories(partial / "trajectories.csv", driven.trajectories)
         if order.pages:

@@ -28,9 +28,9 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from flows.batch.find_cases import safe_id
 from flows.study import cross_product, study_base
 from sgcad_core import settings
-from sgcad_core.config_faults import unknown
+from sgcad_core.config_faults import unknown_name
 from sgcad_core.errors import ConfigError
-from sgcad_core.near_names import nearest
+from sgcad_core.near_names import did_you_mean
 from sgcad_core.system import extends
 
 STUDIES = settings.CONFIGS / "studies"
@@ -128,7 +128,9 @@ class Study:
         """The arm of this name. Raises ConfigError naming those there are."""
         names = [arm.name for arm in self.arms]
         if name not in names:
-            raise ConfigError(f"study {self.name}: no arm {name!r}.{nearest(name, names)} Arms: {', '.join(names)}")
+            raise ConfigError(
+                f"study {self.name}: no arm {name!r}.{did_you_mean(name, names)} Arms: {', '.join(names)}"
+            )
         return self.arms[names.index(name)]
 
 
@@ -183,7 +185,7 @@ def find_study(path: Path) -> Path:
         if file.is_file():
             return file
     known = sorted(f.stem for f in STUDIES.glob("*.yaml"))
-    raise ConfigError(f"{path}: no such study.{nearest(path.stem, known)} In configs/studies/: {', '.join(known)}")
+    raise ConfigError(f"{path}: no such study.{did_you_mean(path.stem, known)} In configs/studies/: {', '.join(known)}")
 
 
 def _parsed(raw: dict[str, Any]) -> tuple[_File | None, list[str]]:
@@ -207,7 +209,7 @@ def _line(error: Any) -> str:
     if error["type"] == "extra_forbidden":
         parts: dict[str, type[_Part]] = {"arms": Arm, "cross": Cross} if len(error["loc"]) > 1 else {}
         part = parts.get(str(error["loc"][0]), _File)
-        return f"{place}: {unknown('key', str(error['loc'][-1]), list(part.model_fields))}"
+        return f"{place}: {unknown_name('key', str(error['loc'][-1]), list(part.model_fields))}"
     return f"{place}: {error['msg']} (found {error['input']!r})"
 
 
@@ -232,5 +234,5 @@ def _faults(parsed: _File, arms: tuple[Arm, ...]) -> list[str]:
         faults += [f"cross.over.{key}: no values; give a list" for key, v in parsed.cross.over.items() if not v]
         known = [arm.name for arm in arms]
         lost = [name for name in parsed.cross.published if name not in known]
-        faults += [f"cross.published.{name}: no arm is called so.{nearest(name, known)}" for name in lost]
+        faults += [f"cross.published.{name}: no arm is called so.{did_you_mean(name, known)}" for name in lost]
     return faults

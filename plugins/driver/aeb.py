@@ -11,7 +11,7 @@ import math
 
 from pydantic import Field
 
-from sgcad_core.case.driver_io import Command, RoadUser, Seat, Task, View, followed
+from sgcad_core.case.driver_io import Command, RoadUser, Seat, Task, View, script_acceleration
 from sgcad_core.handover.foresight import meetings
 from sgcad_core.interfaces import Driver
 
@@ -45,7 +45,7 @@ class _Seat(Seat):
         seen = view._replace(others=tuple(u for u in view.others if self._sees(view.ego, u)))
         if self._decided_s is None and meetings(self._task, seen, self._config.ttc_s):
             self._decided_s = view.t_s
-        onward = followed(self._task, view)
+        onward = script_acceleration(self._task, view)
         if self._decided_s is None or view.t_s < self._decided_s + self._config.delay_s - 1e-9:
             return Command(onward)
         return Command(min(-self._config.deceleration_mps2, onward))

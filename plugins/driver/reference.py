@@ -10,7 +10,7 @@ from typing import Literal
 
 from plugins.driver._careful import Careful
 from plugins.driver._fuzzy import Fuzzy
-from sgcad_core.case.driver_io import Command, Seat, Task, View, followed
+from sgcad_core.case.driver_io import Command, Seat, Task, View, script_acceleration
 from sgcad_core.interfaces import Driver
 
 
@@ -34,5 +34,5 @@ class _Seat(Seat):
     def act(self, view: View) -> Command:
         """The model's braking, else the acceleration of the report's driver."""
         brake = self._mind.brake(view)
-        onward = followed(self._task, view)
+        onward = script_acceleration(self._task, view)
         return Command(onward if brake is None else min(-brake, onward))

@@ -19,7 +19,7 @@ from sgcad_core.errors import ConfigError
 from sgcad_core.formats.sumo.existing_map import hub_legs, read_map
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.formats.sumo.turning import best_turn, turned
+from sgcad_core.formats.sumo.turning import best_turn, turned_network
 from sgcad_core.records.specs import RoadLayout
 from sgcad_core.roads.junction_words import JunctionLeg, describe, layout_legs
 from sgcad_core.roads.layout import COMPASS, hub_control, road_spec
@@ -64,7 +64,7 @@ def compiled(chosen: Map, turn_rad: float) -> RoadNetwork:
         spec = road_spec(layout)
         network = compile_network(plain_xml(spec), spec).model_copy(update={"layout": layout})
     else:
-        network = compile_network(turned(chosen.plain or PlainXml(nodes="", edges=""), turn_rad))
+        network = compile_network(turned_network(chosen.plain or PlainXml(nodes="", edges=""), turn_rad))
     said = f"map_library: {chosen.name}, turned by {math.degrees(turn_rad):.0f} degrees: {chosen.words}"
     log = f"{said}; the map existed before the report, so its connectivity is not the writer's\n{network.log}".strip()
     return network.model_copy(update={"source": "map_library", "log": log})

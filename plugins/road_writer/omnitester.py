@@ -16,7 +16,7 @@ from pydantic import Field, PrivateAttr
 
 from plugins.road_writer._told_layout import Embedder, junction_index
 from plugins.road_writer.plain_xml import PlainAnswer, plain_of_answer
-from sgcad_core.asking.case_cache import OncePerCase
+from sgcad_core.asking.case_cache import CaseCache
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwork
 from sgcad_core.formats.sumo.netconvert import compile_network
@@ -46,7 +46,7 @@ class OmnitesterRoad(RoadWriter):
     base_url: str = ""
     junctions: int = Field(2, ge=1, le=5)
     """Real junctions shown to the net generator."""
-    _seen: OncePerCase[RoadInterpretation] = PrivateAttr(default_factory=OncePerCase)
+    _seen: CaseCache[RoadInterpretation] = PrivateAttr(default_factory=CaseCache)
 
     @property
     def stamp(self) -> str:

@@ -22,7 +22,7 @@ from sgcad_core.errors import ConfigError
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
-from sgcad_core.formats.sumo.turning import best_turn, prolonged, turned
+from sgcad_core.formats.sumo.turning import best_turn, turned_network, with_longer_ends
 from sgcad_core.interfaces import Ask, Retriever, RoadWriter
 from sgcad_core.records.specs import RoadLayout
 from sgcad_core.roads.junction_words import JunctionLeg, describe, describe_layout, layout_legs
@@ -64,7 +64,7 @@ class OsmDirect(RoadWriter):
         found, data = self._nearest(layout)
         legs = _legs(data)
         turn = best_turn(legs, layout_legs(layout))[0] if self.turn else 0.0
-        network = compile_network(turned(prolonged(PlainXml(**data["plain"]), self.leg_length_m), turn))
+        network = compile_network(turned_network(with_longer_ends(PlainXml(**data["plain"]), self.leg_length_m), turn))
         spec = spec_of_graph(parse_net(network.net_xml)) if network.net_xml else None
         said = f"osm_direct: {found.id}, turned by {math.degrees(turn):.0f} degrees: {describe(legs, data['control'])}"
         log = f"{said}\n{network.log}".strip()

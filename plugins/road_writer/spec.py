@@ -15,14 +15,14 @@ from pydantic import Field
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import Context, Finding, Hold, Passage, Query, RoadNetwork
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.records.specs import Compass, RoadLayout, RoadSpec
 from sgcad_core.roads.layout import COMPASS, road_spec
 
-_finding = Finder("layout")
+_finding = FindingFactory("layout")
 
 USUAL_LEGS = 4
 """Junctions of more legs are rare enough to doubt the count first."""

@@ -14,13 +14,13 @@ from pydantic import Field, PrivateAttr
 
 from plugins.scenario_writer._network_words import edge_lines
 from plugins.scenario_writer.code import CodedActor, Declaration
-from sgcad_core.asking.case_cache import OncePerCase
+from sgcad_core.asking.case_cache import CaseCache
 from sgcad_core.asking.fenced_blocks import xml_document
 from sgcad_core.asking.prompts import MAX_ANSWER, answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import ActorInfo, Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.formats.sumo.routes_xml import movers
+from sgcad_core.formats.sumo.routes_xml import route_actors
 from sgcad_core.interfaces import Ask, ScenarioWriter
 from sgcad_core.kinds import actor_kind
 from sgcad_core.records.specs import Spec
@@ -47,7 +47,7 @@ class OmnitesterVehicles(ScenarioWriter):
 
     asks_model: ClassVar[bool] = True
     form: Literal["envelope", "fenced"] = "fenced"
-    _seen: OncePerCase[VehicleInterpretation] = PrivateAttr(default_factory=OncePerCase)
+    _seen: CaseCache[VehicleInterpretation] = PrivateAttr(default_factory=CaseCache)
 
     def write(
         self,
@@ -70,7 +70,7 @@ class OmnitesterVehicles(ScenarioWriter):
             attempt=attempt,
         )
         declared, routes = _read(ask(Context(narrative=seen.vehicles), query).text)
-        sizes = {m.id: (m.length_m, m.width_m) for m in movers(routes)}
+        sizes = {m.id: (m.length_m, m.width_m) for m in route_actors(routes)}
         return Scenario(
             routes_xml=routes,
             actors=tuple(_actor(a, sizes.get(a.id, (None, None))) for a in declared.actors),

@@ -18,7 +18,7 @@ from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import Context, Finding, Passage, Query, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.interfaces import Ask
 from sgcad_core.kinds import DRIVEWAY, RAMP, actor_kind
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
@@ -42,7 +42,7 @@ from sgcad_core.records.specs import (
 )
 from sgcad_core.roads.describe import describe_network
 
-_finding = Finder("scenario")
+_finding = FindingFactory("scenario")
 
 Action = Literal[
     "straight", "turn_left", "turn_right", "u_turn", "stopped", "parked", "slowing", "negotiating_curve",

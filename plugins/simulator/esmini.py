@@ -21,7 +21,7 @@ from sgcad_core.execution.playback import execution_of
 from sgcad_core.formats.openscenario.playing.player import DT_S
 from sgcad_core.interfaces import Simulator
 from sgcad_core.system.subprocess_limits import run_limited
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 LOG = "log.csv"
 MEMORY_MB = 4_000
@@ -53,7 +53,7 @@ class Esmini(Simulator):
         """Play the .xosc on the .xodr. Raises MissingTool, SimulationFailed with esmini's words."""
         if scenario.xosc is None or network.xodr is None:
             raise SimulationFailed("esmini needs an .xosc and an .xodr; for SUMO route files use simulator 'libsumo'")
-        with scratch("esmini") as folder:
+        with temp_folder("esmini") as folder:
             (folder / "scenario.xosc").write_text(scenario.xosc, encoding="utf-8")
             (folder / "road.xodr").write_text(network.xodr, encoding="utf-8")
             said = self._run(folder)

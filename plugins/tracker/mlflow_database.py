@@ -20,7 +20,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 from sgcad_core.errors import ConfigError
-from sgcad_core.system.locks import alone
+from sgcad_core.system.locks import lock_file
 
 LOCKED_S = 5.0
 """Another batch locks the database for milliseconds; a longer lock belongs to another program."""
@@ -129,12 +129,17 @@ def make_database(file: Path) -> None:
         _usable(file)
         return
     file.parent.mkdir(parents=True, exist_ok=True)
-    with alone(file.parent):
+    with lock_file(database_lock(file)):
         if not file.exists():
             partial = file.with_name(f".{file.name}.partial")
             _remove(partial)
             _build(partial)
             os.replace(partial, file)
+
+
+def database_lock(file: Path) -> Path:
+    """The lock file of a database, beside it."""
+    return file.with_name(f".{file.name}.lock")
 
 
 def _usable(file: Path) -> None:

@@ -20,10 +20,10 @@ from pathlib import Path
 from typing import Any
 
 from plugins.tracker import mlflow_database
-from plugins.tracker.mlflow_database import ELSEWHERE, make_database
+from plugins.tracker.mlflow_database import ELSEWHERE, database_lock, make_database
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
-from sgcad_core.system.locks import alone
+from sgcad_core.system.locks import lock_file
 
 MAX_VALUE = 500
 """Limit of the characters of a parameter's value: MLflow's own is 6,000, a table shows far fewer."""
@@ -127,7 +127,7 @@ class Store:
         key = hashlib.sha256(json.dumps([config, params], sort_keys=True).encode()).hexdigest()[:16]
         if key not in self.parents:
             _ = self.experiment_id  # made before the lock is taken, which making a database takes as well
-            with alone(self._file.parent) if self._file else contextlib.nullcontext():
+            with lock_file(database_lock(self._file)) if self._file else contextlib.nullcontext():
                 self.parents[key] = Parent(self, self._found_or_made(config, key, params), config)
         return self.parents[key]
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sgcad_core.case.records import Finding, Severity
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.records.specs import BehaviorSpec
 
-_finding = Finder("behavior_narrative")
+_finding = FindingFactory("behavior_narrative")
 
 
 def near_crash_findings(behavior: BehaviorSpec, facts: CrashFacts) -> Iterator[Finding]:

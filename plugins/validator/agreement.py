@@ -11,7 +11,7 @@ from sgcad_core.case.records import ActorInfo, Evidence, Finding, ObservedContac
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.contact import CLEARANCE_TOLERANCE_M, avoided, closest_approach, first_contact, realised
 from sgcad_core.execution.playback import sizes_of
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.agreement import network_disagreements
 from sgcad_core.formats.openscenario.playing.player import entity_boxes, play
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
@@ -20,7 +20,7 @@ from sgcad_core.geometry.plane import Floats
 from sgcad_core.interfaces import Validator
 from sgcad_core.records.specs import Contact
 
-_finding = Finder("agreement")
+_finding = FindingFactory("agreement")
 
 START_M = 6.0
 """A start on the shoulder, one and a half lanes from a center line, still stands on the road."""

@@ -15,7 +15,7 @@ from typing import ClassVar, Literal
 from plugins.validator._courses import SIDES, UNNUMBERED, approaches, course, heading, held
 from plugins.validator._near_crash import near_crash_findings
 from sgcad_core.case.records import Evidence, Finding, Hold, RoadNetwork, Scenario
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.interfaces import Validator
 from sgcad_core.reading.behavior.exit_assignment import goes_tail_first, square_rad
 from sgcad_core.reading.contacts.contact_records import ContactFacts
@@ -24,7 +24,7 @@ from sgcad_core.reading.layout.road_ways import Way, apart, degree, exits, turn_
 from sgcad_core.reading.text.compass import angle_of, compass_of_angle
 from sgcad_core.records.specs import Area, BehaviorSpec, Contact, Maneuver, RoadSpec
 
-_finding = Finder("behavior_narrative")
+_finding = FindingFactory("behavior_narrative")
 
 _FAR_RAD = math.radians(70)
 """A heading that is more than a compass eighth (and a bend) off."""

@@ -13,7 +13,7 @@ from plugins.validator._road_holds import along, carrying, ends, laid, totals
 from sgcad_core.asking.schema_holds import SOME_LANES
 from sgcad_core.case.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, junction_kind, unsupported_kind
@@ -26,7 +26,7 @@ from sgcad_core.records.specs import Compass
 from sgcad_core.roads.compiled_facts import CompiledRoad, compiled_roads, headings_agree, junctions
 from sgcad_core.roads.lane_total_readings import allowed_totals, may_show_other_lanes
 
-_finding = Finder("road_narrative")
+_finding = FindingFactory("road_narrative")
 
 _ORDER = ("refuse", "repair", "doubt", "note")
 

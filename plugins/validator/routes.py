@@ -6,13 +6,13 @@ from typing import ClassVar, Literal
 
 from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput, SimulationFailed
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.routes_xml import SOURCE, routes_findings
 from sgcad_core.interfaces import Validator
 from sgcad_core.system.worker_process import Worker
 
-_finding = Finder(SOURCE, where="routes")
+_finding = FindingFactory(SOURCE, where="routes")
 
 _WORKER = Worker("plugins.validator._sumo_worker:trial")
 

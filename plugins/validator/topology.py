@@ -15,14 +15,14 @@ import numpy as np
 from sgcad_core.asking.schema_holds import SOME_LANES
 from sgcad_core.case.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.sumo.net_xml import Edge, Floats, LaneGraph, parse_net, road_of
 from sgcad_core.geometry.plane import arc_lengths, resample
 from sgcad_core.interfaces import Validator
 from sgcad_core.records.specs import Compass, RoadSpec
 from sgcad_core.roads.road_spec import turn_findings
 
-_finding = Finder("topology")
+_finding = FindingFactory("topology")
 
 
 class Topology(Validator):

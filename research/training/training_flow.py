@@ -25,7 +25,7 @@ from sgcad_core import settings
 from sgcad_core.errors import BadInput, SgcadError
 from sgcad_core.interfaces import Tracker
 from sgcad_core.registry import plugin_class
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 LOG, EXPORT = "log.jsonl", "export"
 EXPERIMENT = "mini"
@@ -80,7 +80,7 @@ class Training:
         last = next((line for line in reversed(self.lines()) if "step" in line), None)
         if last is None or not (self.folder / EXPORT).is_dir():
             return {}
-        with scratch("judge") as place:
+        with temp_folder("judge") as place:
             found = place / "figures.json"
             command = [
                 sys.executable,

@@ -1,4 +1,4 @@
-"""A case's account: what its report tells and the scenario has, what it tells and the scenario lacks, what was assumed.
+"""The account of a case: stated things that the scenario has, those that it lacks, and assumptions.
 
 Layer: above records, roads, metrics and execution; result.json is made with it. Knows no file and no plugin.
 """

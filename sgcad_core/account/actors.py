@@ -1,15 +1,15 @@
-"""Who is told and who is there: vehicles by number, people and things that are struck, what kind each is."""
+"""Actors of the report against those of the scenario: vehicles, pedestrians, struck objects, and their kinds."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from sgcad_core.account.inputs import Made, is_told
+from sgcad_core.account.inputs import ExecutedCase, is_stated
 from sgcad_core.account.records import Item
 from sgcad_core.kinds import actor_kind
 
 
-def actor_items(made: Made) -> Iterator[Item]:
+def actor_items(made: ExecutedCase) -> Iterator[Item]:
     """Vehicles of the report, what they strike, and the kinds that are stated."""
     kinds = {actor.id: actor.type for actor in made.scenario.actors}
     for vehicle in made.reading.crash.vehicles:
@@ -25,15 +25,15 @@ def actor_items(made: Made) -> Iterator[Item]:
         yield from _kind(made, vehicle.id, kinds)
 
 
-def _kind(made: Made, name: str, kinds: Mapping[str, str]) -> Iterator[Item]:
+def _kind(made: ExecutedCase, name: str, kinds: Mapping[str, str]) -> Iterator[Item]:
     fact = made.told.get(f"vehicles.{name}.kind")
     if name not in kinds:
         return
-    if fact and is_told(fact):
+    if fact and is_stated(fact):
         told, seen = str(fact.value), kinds[name]
         same = actor_kind(told).taken_for == actor_kind(seen).taken_for
         yield made.item(same, fact.field, told, seen, why=f"a {seen} drives there")
     towing = made.told.get(f"vehicles.{name}.trailer")
-    if towing and is_told(towing):
+    if towing and is_stated(towing):
         longer = made.sizes[name][0] > actor_kind(kinds[name]).length_m + 1 or any(a[0] == "T" for a in made.tracks)
         yield made.item(longer, towing.field, True, why="it tows nothing")

@@ -1,6 +1,6 @@
-"""What the scenario has and nobody told: defaults, and what only follows from what is told, by the field.
+"""Assumptions of a scenario, one per field: defaults, and facts that only follow from stated ones.
 
-Knows facts; what a model answered is its own opinion and no assumption, unless the evidence does not tell it.
+Knows facts. A model's answer counts as an assumption only where the evidence does not contain it.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from sgcad_core.account.inputs import Made
+from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
 from sgcad_core.account.words import phrase
 from sgcad_core.records.facts import Fact
@@ -19,11 +19,11 @@ _FOLLOWS = re.compile(
     r"contacts\.\d+\.(striker|struck|striker_area|struck_area)$|vehicles\.V\d+\.(heading|maneuver|start_road)$"
     r"|junction\.(kind|stem|stopped)$"
 )
-"""What is named as assumed where it only follows from what is told."""
+"""Fields that count as assumed where their value is inferred from stated facts."""
 
 
-def assumed_items(made: Made, facts: Iterable[Fact]) -> Iterator[Item]:
-    """One item a field, the last fact of it; a junction of which no control is told has none."""
+def assumed_items(made: ExecutedCase, facts: Iterable[Fact]) -> Iterator[Item]:
+    """One item per field, from its last fact; a junction without a stated control is assumed to have none."""
     last = {fact.field: fact for fact in facts}
     for fact in last.values():
         if fact.value is not None and not _NO_PART.search(fact.field) and (reason := _reason(fact)):
@@ -35,7 +35,7 @@ def assumed_items(made: Made, facts: Iterable[Fact]) -> Iterator[Item]:
 
 
 def _reason(fact: Fact) -> str:
-    """Why it counts as assumed; "" where it does not."""
+    """The reason why a fact counts as assumed; "" where it does not."""
     if fact.status == "default":
         return "not told"
     if fact.basis == "text" and fact.status == "inferred" and _FOLLOWS.match(fact.field):
@@ -45,7 +45,7 @@ def _reason(fact: Fact) -> str:
     return ""
 
 
-def _item(fact: Fact, reason: str, made: Made) -> Item:
+def _item(fact: Fact, reason: str, made: ExecutedCase) -> Item:
     parts = fact.field.split(".")
     subject = parts[1] if parts[0] in ("vehicles", "others") else ".".join(parts[:-1])
     return Item(

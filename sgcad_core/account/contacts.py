@@ -1,10 +1,10 @@
-"""Told contacts against those that come about: the first one, later ones, things that are struck, near crashes."""
+"""Contacts of the report against those of the execution: the first, later ones, struck objects, near crashes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sgcad_core.account.inputs import Made
+from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
 from sgcad_core.case.records import ObservedContact
 from sgcad_core.execution.contact import avoided, closest_approach
@@ -17,8 +17,8 @@ _OPEN_SIDES = 4
 _EPS_S = 1e-6
 
 
-def contact_items(made: Made) -> Iterator[Item]:
-    """What becomes of every contact that is told, in the order of the text; of a near crash whether it is one."""
+def contact_items(made: ExecutedCase) -> Iterator[Item]:
+    """One item per contact of the report, in the order of the text; for a near crash whether it is one."""
     crash = made.reading.crash
     if crash.near_crash:
         yield from _near_crash(made)
@@ -39,12 +39,12 @@ def _pair(a: str, b: str) -> frozenset[str]:
     return frozenset((a, b))
 
 
-def _thing(made: Made, contact: ContactFacts) -> bool:
-    """Whether somebody is told to have struck a thing or a person: those contacts are put together, but told."""
+def _thing(made: ExecutedCase, contact: ContactFacts) -> bool:
+    """Whether the struck actor is an object or a person: such contacts are inferred records of stated words."""
     return any(other.id == contact.struck for other in made.reading.crash.others)
 
 
-def _came_about(made: Made, number: int, contact: ContactFacts, times: list[float], last: float) -> Item:
+def _came_about(made: ExecutedCase, number: int, contact: ContactFacts, times: list[float], last: float) -> Item:
     field, pair = f"contacts.{number}.striker", (contact.striker, contact.struck)
     text = f"{_ordinal(number)}: {contact.striker} strikes {_called(made, contact.struck)}"
     first = made.execution.contact
@@ -64,18 +64,18 @@ def _ordinal(number: int) -> str:
     return "first contact" if number == 0 else f"contact {number + 1}"
 
 
-def _called(made: Made, name: str) -> str:
+def _called(made: ExecutedCase, name: str) -> str:
     return next((f"{name} ({o.word})" for o in made.reading.crash.others if o.id == name), name)
 
 
-def _before(made: Made, first: ObservedContact) -> bool:
-    """Whether the report tells a contact with a thing before the first one of two vehicles, and this is one."""
+def _before(made: ExecutedCase, first: ObservedContact) -> bool:
+    """Whether this is a contact with an object that the report has before the first one of two vehicles."""
     early = {impact.actor for impact in made.reading.crash.impacts if impact.before}
     return any({first.actor, first.other} & early and name[0] == "O" for name in (first.actor, first.other))
 
 
-def _sides(made: Made, number: int, contact: ContactFacts, times: list[float]) -> Iterator[Item]:
-    """The sides that the words leave open are assumed; the others must touch."""
+def _sides(made: ExecutedCase, number: int, contact: ContactFacts, times: list[float]) -> Iterator[Item]:
+    """Items for the sides that touch; sides that the words leave open are skipped."""
     may = {contact.striker: contact.striker_may, contact.struck: contact.struck_may}
     names = {contact.striker: "striker_area", contact.struck: "struck_area"}
     declared = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
@@ -94,7 +94,7 @@ def _areas(seen: ObservedContact) -> dict[str, Area]:
     return {seen.actor: seen.actor_area, seen.other: seen.other_area}
 
 
-def _impact(made: Made, number: int, impact: ImpactTold) -> Item:
+def _impact(made: ExecutedCase, number: int, impact: ImpactTold) -> Item:
     """A contact behind the first one, or with a thing."""
     letter = _letter(impact.other)
     vehicle = made.reading.crash.vehicle(impact.other) is not None
@@ -115,7 +115,7 @@ def _letter(word: str) -> str:
     return next((str(user.yields["letter"]) for user in of_role("road_user") if user.search(word)), "O")
 
 
-def _near_crash(made: Made) -> Iterator[Item]:
+def _near_crash(made: ExecutedCase) -> Iterator[Item]:
     near, told = made.scenario.near_crash, made.reading.crash.near_crash
     pair = made.reading.crash.contacts[0] if made.reading.crash.contacts else None
     if told is None or pair is None or not told.stated:

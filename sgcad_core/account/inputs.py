@@ -1,4 +1,4 @@
-"""What was made of a report, as the account's parts see it: the reading, the roads, the course of the execution."""
+"""One executed case as the modules of the account use it: reading, compiled roads, executed motion."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from sgcad_core.roads.lane_graph import LaneGraph
 
 
 @dataclass(frozen=True)
-class Made:
-    """One executed case. Roads are looked at as compiled, motion as executed: not what a writer says of them."""
+class ExecutedCase:
+    """One executed case: roads as compiled and motion as executed, not as a writer declares them."""
 
     reading: Reading
     network: RoadNetwork
@@ -56,7 +56,7 @@ class Made:
 
     @cached_property
     def crash(self) -> Crash:
-        """The execution as the scorers see it."""
+        """The execution in the form of the label scorers."""
         paths = {name: Path(t.t_s, t.pose, self.sizes[name]) for name, t in self.tracks.items()}
         return Crash(paths, self.graph)
 
@@ -71,7 +71,7 @@ class Made:
         return observe(a, b, int(np.abs(a.t_s - t_s).argmin()), self.sizes)
 
     def item(self, has: bool, field: str, value: Value, seen: Value = None, *, why: str = "", text: str = "") -> Item:
-        """Something told that the scenario has, or lacks and why; its sentence is that of the field's fact."""
+        """A stated item that the scenario has, or lacks and why; its sentence is that of the field's fact."""
         fact = self.told.get(field)
         place = (fact.start, fact.end) if fact else (None, None)
         subject = ".".join(field.split(".")[:2]) if field.startswith(("roads", "contacts", "impacts")) else ""
@@ -82,6 +82,6 @@ class Made:
         )  # fmt: skip
 
 
-def is_told(fact: Fact) -> bool:
-    """Whether a sentence, or a person, says it; what only follows from sentences is no telling."""
+def is_stated(fact: Fact) -> bool:
+    """Whether a sentence or an edit states the fact; inferred facts are not stated."""
     return fact.basis == "person" or (fact.basis == "text" and fact.status == "stated")

@@ -1,6 +1,6 @@
-"""What vehicles are told to do against what they do: as `sgcad score` sees a motion, fact by fact.
+"""Stated motion of vehicles against executed motion, fact by fact, with the criteria of `sgcad score`.
 
-A vehicle that is not there lacks itself, not each of its deeds. Angles are clockwise degrees from north.
+An absent vehicle is one lacking item, its motion none. Angles are clockwise degrees from north.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.account.inputs import Made, is_told
+from sgcad_core.account.inputs import ExecutedCase, is_stated
 from sgcad_core.account.records import Item
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP
@@ -26,42 +26,42 @@ _HEADING_RAD = math.radians(45.0 + 22.5)
 """A heading is right within an eighth of the circle beside the compass word's own eighth, as the scorers have it."""
 _LIES = {"wheels": "wheels", "roof": "roof", "left": "left side", "right": "right side"}
 _SPIN_DEG = 60.0
-"""A told angle of spin is right within so much: reports give quarters."""
+"""Tolerance of a stated angle of spin: reports give quarter turns."""
 
 
-class Seen(NamedTuple):
-    """Whether a deed shows; what is seen instead, and in words why it lacks."""
+class Comparison(NamedTuple):
+    """Whether the motion shows a fact; the value seen instead, and the reason in words."""
 
     has: bool
     instead: Value = None
     why: str = "not so in the scenario"
 
 
-Judge = Callable[[Made, str, Value], Seen | None]
-"""Of a vehicle's fact; None: nothing to hold it to."""
+Judge = Callable[[ExecutedCase, str, Value], Comparison | None]
+"""Compares a vehicle's fact with the execution; None: nothing to compare with."""
 
 
-def motion_items(made: Made) -> Iterator[Item]:
-    """Every told deed of the vehicles that are there."""
+def motion_items(made: ExecutedCase) -> Iterator[Item]:
+    """One item per stated fact of motion of the vehicles in the scenario."""
     for fact in made.reading.facts:
         parts = fact.field.split(".", 2)
-        if parts[0] != "vehicles" or len(parts) < 3 or parts[1] not in made.tracks or not is_told(fact):
+        if parts[0] != "vehicles" or len(parts) < 3 or parts[1] not in made.tracks or not is_stated(fact):
             continue
         seen = _judged(made, parts[1], parts[2], fact)
         if seen is not None:
             yield made.item(seen.has, fact.field, fact.value, seen.instead, why=seen.why)
 
 
-def _judged(made: Made, who: str, name: str, fact: Fact) -> Seen | None:
+def _judged(made: ExecutedCase, who: str, name: str, fact: Fact) -> Comparison | None:
     if name in _JUDGES:
         return _JUDGES[name](made, who, fact.value)
     if name not in _LABELS:
         return None
     marks = _marks(made, who, _LABELS[name](fact.value))
-    return Seen(all(m >= 1.0 for m in marks.values())) if marks else None
+    return Comparison(all(m >= 1.0 for m in marks.values())) if marks else None
 
 
-def _marks(made: Made, who: str, label: VehicleLabel) -> Mapping[str, float]:
+def _marks(made: ExecutedCase, who: str, label: VehicleLabel) -> Mapping[str, float]:
     return vehicle_marks(CourseLabel("", {who: label}, ()), made.crash)[who]
 
 
@@ -81,7 +81,7 @@ _LABELS: dict[str, Callable[[Value], VehicleLabel]] = {
     "rest.facing_deg": lambda value: VehicleLabel(rest=RestLabel(facing=_point(float(value)))),  # type: ignore[arg-type]
     "rest.where": lambda value: VehicleLabel(rest=RestLabel(where=value)),  # type: ignore[arg-type]
 }
-"""Facts that the scorers know under a label of their own."""
+"""Facts that the label scorers compare."""
 
 
 def _point(degrees: float) -> str:
@@ -89,16 +89,16 @@ def _point(degrees: float) -> str:
 
 
 # ------------------------------------------------------------------ others
-def _heading(made: Made, who: str, value: Value) -> Seen | None:
+def _heading(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     if value not in COMPASS:
         return None
     first = float(made.tracks[who].heading_rad[0])
     off = abs(float(wrap_angle(np.array([first - angle_of(value)]))[0]))
     seen = compass_of_angle(first)
-    return Seen(off <= _HEADING_RAD, seen, f"it heads {seen}")
+    return Comparison(off <= _HEADING_RAD, seen, f"it heads {seen}")
 
 
-def _lane(made: Made, who: str, value: Value) -> Seen | None:
+def _lane(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     """A numbered lane, or one by its side; a turn lane is the outermost one of its side."""
     side = str(value).removesuffix("_turn") if isinstance(value, str) else value
     if side not in ("left", "right", "middle") and not isinstance(side, int):
@@ -109,63 +109,63 @@ def _lane(made: Made, who: str, value: Value) -> Seen | None:
         return None
     edge, lane = one.home
     place = next(i for i, other in enumerate(edge.car_lanes) if other.index == lane.index) + 1
-    return Seen(all(m >= 1 for m in marks.values()), place, f"it starts in lane {place} of {len(edge.car_lanes)}")
+    return Comparison(all(m >= 1 for m in marks.values()), place, f"it starts in lane {place} of {len(edge.car_lanes)}")
 
 
-def _spin_deg(made: Made, who: str, value: Value) -> Seen | None:
+def _spin_deg(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     if not isinstance(value, int | float):
         return None
     one = VehicleMotion(made.crash, who)
     turned = abs(math.degrees(float(wrap_angle(np.diff(one.path.pose[one.hit :, 2])).sum())))
-    return Seen(abs(turned - float(value)) <= _SPIN_DEG, round(turned), f"it turns by {turned:.0f} degrees")
+    return Comparison(abs(turned - float(value)) <= _SPIN_DEG, round(turned), f"it turns by {turned:.0f} degrees")
 
 
-def _side(made: Made, who: str, value: Value) -> Seen | None:
+def _side(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     where = made.told.get(f"vehicles.{who}.rest.where")
     if where is None or where.value in ("road", "intersection"):
         return None
     label = VehicleLabel(rest=RestLabel(where=where.value, side=str(value)))  # type: ignore[arg-type]
     mark = _marks(made, who, label).get("rest_side")
-    return None if mark is None else Seen(mark >= 1, why="it comes to rest on another side")
+    return None if mark is None else Comparison(mark >= 1, why="it comes to rest on another side")
 
 
-def _attitude(made: Made, who: str, value: Value) -> Seen | None:
+def _attitude(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     seen = attitude_of(float(made.tracks[who].rolls[-1]))
-    return Seen(seen == value, seen, f"it comes to rest on its {_LIES[seen]}")
+    return Comparison(seen == value, seen, f"it comes to rest on its {_LIES[seen]}")
 
 
-def _rolls(made: Made, who: str, value: Value) -> Seen:
+def _rolls(made: ExecutedCase, who: str, value: Value) -> Comparison:
     most = float(np.abs(made.tracks[who].rolls).max())
-    return Seen(most >= math.pi / 2 - 1e-3, round(math.degrees(most)), "it stays on its wheels")
+    return Comparison(most >= math.pi / 2 - 1e-3, round(math.degrees(most)), "it stays on its wheels")
 
 
-def _joins(road_name: Callable[[Made, str], str | None]) -> Judge:
-    """Whether a vehicle comes from, or goes into, such a road."""
+def _joins(road_name: Callable[[ExecutedCase, str], str | None]) -> Judge:
+    """A comparison of the kind of road that a vehicle comes from or enters."""
 
-    def judged(made: Made, who: str, value: Value) -> Seen | None:
+    def judged(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
         wanted = {DRIVEWAY: DRIVEWAY, ALLEY: ALLEY, PARKING_LOT: DRIVEWAY, RAMP: RAMP}.get(str(value))
         spec, name = made.network.spec, road_name(made, who)
         if wanted is None or spec is None or name is None:
             return None
         kind = next((ALLEY if road.alley else road.kind for road in spec.roads if road.id == name), "road")
         lot = made.reading.roads.junction.kind == PARKING_LOT or (str(value) == RAMP and _in_gore(made, who))
-        return Seen(kind == wanted or lot, kind, f"that road is drawn as a {kind}")
+        return Comparison(kind == wanted or lot, kind, f"that road is drawn as a {kind}")
 
     return judged
 
 
-def _in_gore(made: Made, who: str) -> bool:
+def _in_gore(made: ExecutedCase, who: str) -> bool:
     """Whether it crosses the gore of a ramp, so that it is on the ramp for a while."""
     behavior = made.scenario.behavior
     return behavior is not None and any(a.gore for a in behavior.actors if a.id == who)
 
 
-def _start(made: Made, who: str) -> str | None:
+def _start(made: ExecutedCase, who: str) -> str | None:
     behavior = made.scenario.behavior
     return next((a.road for a in behavior.actors if a.id == who), None) if behavior else None
 
 
-def _exit(made: Made, who: str) -> str | None:
+def _exit(made: ExecutedCase, who: str) -> str | None:
     behavior = made.scenario.behavior
     return next((a.exit_road for a in behavior.actors if a.id == who), None) if behavior else None
 

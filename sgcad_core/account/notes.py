@@ -1,4 +1,4 @@
-"""Notes of a case with a schema: what any step remarked, of whom, where in the report. Knows no file.
+"""Notes of a case as records: the remark of a step, its subject, its place in the report. Knows no file.
 
 kind: `reader` (the report's files), `limit` (beyond what is read or driven), `finding` (a validator's remark), `held`
 (what a model's answer was held to), `judge` (a second simulator), `plan` (what writer and planner changed or left out).
@@ -27,7 +27,7 @@ _WORDS = {
 
 
 class Note(Record):
-    """One remark; `field` and `subject` are empty where it is of the whole case, [start, end) None without sentence."""
+    """One remark; `field` and `subject` are empty for the whole case, start and end None without a sentence."""
 
     kind: NoteKind
     field: str = ""
@@ -38,7 +38,7 @@ class Note(Record):
 
 
 def notes_of(kind: NoteKind, texts: Iterable[str], facts: Mapping[str, Fact], field: str = "") -> list[Note]:
-    """Notes of plain remarks: the subject is the first actor that is named, the field and sentence that of its fact."""
+    """Notes of plain remarks: the subject is the first actor named, field and sentence those of its fact."""
     return [_note(kind, text, facts, field) for text in texts]
 
 
@@ -52,7 +52,7 @@ def _note(kind: NoteKind, text: str, facts: Mapping[str, Fact], field: str) -> N
 
 
 def _field(subject: str, text: str, facts: Mapping[str, Fact]) -> str:
-    """The fact that the words name, of the actor that they name; else the contact of two named ones."""
+    """The name of the actor's fact that the words mention, else of the contact of two named actors."""
     names = list(dict.fromkeys(_ID.findall(text)))
     told = [name for name in facts if name.startswith((f"vehicles.{subject}.", f"others.{subject}."))]
     wanted = [start for word, start in _WORDS.items() if re.search(rf"\b{word}\b", text)]

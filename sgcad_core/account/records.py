@@ -1,4 +1,4 @@
-"""The records of an account. Plain values: they are written into result.json as they stand."""
+"""The records of an account, written into result.json as they are."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from sgcad_core.records.facts import Value
 
 Kind = Literal["has", "lacks", "assumed"]
 Verdict = Literal["whole", "lacking", "none"]
-"""`whole`: nothing that was found to be told is lacking; `lacking`: something is; `none`: no scenario to hold it to."""
+"""`whole`: no stated item is lacking; `lacking`: at least one is; `none`: there is no scenario to compare with."""
 
 
 class Item(Record):
-    """One thing that the report tells and the scenario has or lacks, or that the scenario has and nobody told.
+    """One stated thing that the scenario has or lacks, or one assumption of the scenario.
 
     `field`: the fact's name (`sgcad_core.records.facts.Fact.field`) or, of what no fact carries, "text.<what>".
-    `subject`: whom it is about ("V1", "roads.main", "junction", "contacts.0", ""). `value`: as told or as assumed;
+    `subject`: "V1", "roads.main", "junction", "contacts.0" or "". `value`: as stated or as assumed;
     `seen`: what the scenario has instead. [start, end): the sentence in the narrative as it was written; None where
     there is none.
     """

@@ -1,6 +1,6 @@
-"""Where somebody is told to be: at a stop sign, in a roundabout, on foot on one leg of the junction.
+"""Stated places of actors: at a stop sign, in a roundabout, on foot on one leg of the junction.
 
-A second look at the story's sentences that knows words only, held against where the scenario has them.
+Matches words in the narrative's sentences and compares them with the places in the scenario.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sgcad_core.account.inputs import Made
+from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.metrics.rest_error import COMPASS_DEG
@@ -23,11 +23,11 @@ _AT_SIGN, _AROUND, _ON_LEG = rule("account.at_sign"), rule("account.around"), ru
 _LEG_DEG = 50.0
 _ON_LANE_M = 2.0
 _APPROACH_S = 2.0
-"""Time before its first contact in which one who circulates is looked for on the circle."""
+"""Time before its first contact in which a circulating vehicle must be on the circle."""
 
 
-def whereabouts_items(made: Made) -> Iterator[Item]:
-    """One item a thing told, the first time that it is told."""
+def told_place_items(made: ExecutedCase) -> Iterator[Item]:
+    """One item per stated place, for its first mention."""
     found: dict[str, Item] = {}
     for sentence in made.reading.sentences:
         if sentence.role in STORY_ROLES:
@@ -45,8 +45,8 @@ def _item(has: bool, sentence: Sentence, about: tuple[str, str, str], text: str,
 
 
 # ------------------------------------------------------------------ signs
-def _at_sign(made: Made, sentence: Sentence) -> Iterator[Item]:
-    """Who stops at a sign comes on a leg that has one."""
+def _at_sign(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
+    """A vehicle that stops at a sign comes on a leg with a sign."""
     spec, behavior = made.network.spec, made.scenario.behavior
     for match in _AT_SIGN.finditer(sentence.text):
         actor = (
@@ -64,8 +64,8 @@ def _at_sign(made: Made, sentence: Sentence) -> Iterator[Item]:
 
 
 # ------------------------------------------------------------------ roundabouts
-def _around(made: Made, sentence: Sentence) -> Iterator[Item]:
-    """Who circulates is on the circle before the first contact, in the told lane of it."""
+def _around(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
+    """A circulating vehicle is on the circle before the first contact, in the stated lane."""
     for match in _AROUND.finditer(sentence.text):
         if match["who"] in made.tracks and made.graph.circles:
             lane = _circle_lane(made, match["who"])
@@ -77,8 +77,8 @@ def _around(made: Made, sentence: Sentence) -> Iterator[Item]:
                         f"{seen} in the {_APPROACH_S:.0f} s before its contact")  # fmt: skip
 
 
-def _circle_lane(made: Made, who: str) -> tuple[int, int] | None:
-    """(lane from the outer edge, lanes) of the circle in which somebody comes to the contact; None: in none."""
+def _circle_lane(made: ExecutedCase, who: str) -> tuple[int, int] | None:
+    """(lane from the outer edge, lanes) of the circle in which a vehicle comes to the contact; None: in none."""
     path = made.crash.paths[who]
     hit = made.crash.first_of(who)
     early = max(0, int(np.searchsorted(path.t_s, float(path.t_s[hit]) - _APPROACH_S)))
@@ -93,8 +93,8 @@ def _circle_lane(made: Made, who: str) -> tuple[int, int] | None:
 
 
 # ------------------------------------------------------------------ on foot
-def _on_leg(made: Made, sentence: Sentence) -> Iterator[Item]:
-    """Somebody on foot or on a bicycle who is told on one leg of the junction is struck there."""
+def _on_leg(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
+    """A pedestrian or cyclist on a stated leg of the junction is struck there."""
     match = _ON_LEG.search(sentence.text)
     walker = next((name for name in made.tracks if name[0] in "PB"), None)
     hub = _hub(made)
@@ -108,7 +108,7 @@ def _on_leg(made: Made, sentence: Sentence) -> Iterator[Item]:
     yield _item(fits, sentence, about, f"{walker} on the {match['way'].lower()} leg", "it is struck elsewhere")
 
 
-def _hub(made: Made) -> tuple[float, float] | None:
+def _hub(made: ExecutedCase) -> tuple[float, float] | None:
     """The place of the node where most edges meet."""
     counts: dict[str, int] = {}
     for edge in made.graph.edges.values():

@@ -1,14 +1,14 @@
-"""What the text names and no fact carries: numbers nobody has, further vehicles, people and animals, places, contacts.
+"""Things that the text names and no fact holds: unknown numbers, further vehicles, people, animals, places, contacts.
 
-A second look at the sentences that knows words only and trusts no reading: what the readers passed over is told all the
-same. Sentences that retell or judge (interviews, codes, injuries) are left out.
+Matches words in the sentences independently of the reading, so that what the readers missed is reported
+as lacking. Sentences that retell or judge (interviews, codes, injuries) are left out.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sgcad_core.account.inputs import Made
+from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
 from sgcad_core.kinds import JUNCTIONS, ROUNDABOUT
 from sgcad_core.reading.language import of_role, rule
@@ -29,11 +29,11 @@ _SATISFIED_BY: dict[str, tuple[str, ...]] = {
     "merge": _ASIDE, "crossing_centerline": _ASIDE, "departing_road_left": _ASIDE, "departing_road_right": _ASIDE,
     "backing": ("backing",),
 }  # fmt: skip
-"""Deed in the text -> beginnings of the maneuvers that show it; other deeds come before and behind many maneuvers."""
+"""Act in the text -> prefixes of the maneuvers that show it; other acts occur within many maneuvers."""
 
 
-def unread_items(made: Made) -> Iterator[Item]:
-    """Items of the story's sentences, each thing once."""
+def unread_items(made: ExecutedCase) -> Iterator[Item]:
+    """Lacking items of the narrative's sentences, each thing once."""
     story = [s for s in made.reading.sentences if s.role in STORY_ROLES]
     found: dict[str, Item] = {}
     for sentence in story:
@@ -42,7 +42,7 @@ def unread_items(made: Made) -> Iterator[Item]:
     yield from found.values()
 
 
-def _of_sentence(made: Made, sentence: Sentence) -> Iterator[Item]:
+def _of_sentence(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     yield from _numbers(made, sentence)
     yield from _called(made, sentence)
     yield from _further(made, sentence)
@@ -59,14 +59,14 @@ def _lacks(sentence: Sentence, what: str, value: str, text: str, reason: str) ->
     )  # fmt: skip
 
 
-# ------------------------------------------------------------------ who
-def _named(made: Made, sentence: Sentence) -> set[str]:
-    """Ids of everybody whom a sentence names."""
+# ------------------------------------------------------------------ actors
+def _named(made: ExecutedCase, sentence: Sentence) -> set[str]:
+    """Ids of the vehicles that a sentence names."""
     return {made.reading.actor(m[0]) for m in _VEHICLE.finditer(sentence.text)}
 
 
-def _numbers(made: Made, sentence: Sentence) -> Iterator[Item]:
-    """Numbered vehicles that nobody read, and more vehicles counted than there are."""
+def _numbers(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
+    """Numbered vehicles that were not read, and counts above the number of vehicles in the scenario."""
     known = {v.id for v in made.reading.crash.vehicles} | set(made.tracks)
     for name in sorted(_named(made, sentence) - known):
         who = next((f"{m['words']!r}" for m in _INTRODUCED.finditer(sentence.text) if m["id"] == name), name)
@@ -79,7 +79,7 @@ def _numbers(made: Made, sentence: Sentence) -> Iterator[Item]:
             yield _lacks(sentence, "vehicles", str(count), text, f"the scenario has {there}")
 
 
-def _called(made: Made, sentence: Sentence) -> Iterator[Item]:
+def _called(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     """What a vehicle is said to be, where no word of it is of a kind that there is and a usual one is drawn."""
     for match in _CALLED.finditer(sentence.text):
         name = made.reading.actor(match["id"])
@@ -90,7 +90,7 @@ def _called(made: Made, sentence: Sentence) -> Iterator[Item]:
             yield _lacks(sentence, "kind", words, text, reason)
 
 
-def _further(made: Made, sentence: Sentence) -> Iterator[Item]:
+def _further(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     """Vehicles without a number, in reports that number the others."""
     if made.reading.crash.unnumbered:
         return
@@ -98,8 +98,8 @@ def _further(made: Made, sentence: Sentence) -> Iterator[Item]:
         yield _lacks(sentence, "further", match[0].lower(), f"{match[0]!r} is named", "it is not in the scenario")
 
 
-def _struck(made: Made, sentence: Sentence) -> Iterator[Item]:
-    """People and animals in sentences that tell a contact, where the scenario has nobody of their kind."""
+def _struck(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
+    """People and animals in sentences about a contact, where the scenario has no actor of their kind."""
     if not is_impact(sentence.text):
         return
     kinds = [(user, str(user.yields["letter"])) for user in of_role("road_user")]
@@ -109,9 +109,9 @@ def _struck(made: Made, sentence: Sentence) -> Iterator[Item]:
             yield _lacks(sentence, "struck", match[0].lower(), f"{match[0]!r} in a contact", "not in the scenario")
 
 
-# ------------------------------------------------------------------ where
-def _places(made: Made, sentence: Sentence) -> Iterator[Item]:
-    """Junctions of a named kind that is not the one drawn."""
+# ------------------------------------------------------------------ places
+def _places(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
+    """Named kinds of junctions that differ from the compiled one."""
     legs = {len(found) for found in junctions(made.graph)}
     for match in _MANY_LEGS.finditer(sentence.text):
         count = NUMBERS.get(match["n"].lower()) or int(match["n"])
@@ -124,9 +124,9 @@ def _places(made: Made, sentence: Sentence) -> Iterator[Item]:
         yield _lacks(sentence, "junction", ROUNDABOUT, f"{named[0]!r} is named", "no roundabout is drawn")
 
 
-# ------------------------------------------------------------------ what happens
-def _contact(made: Made, sentence: Sentence) -> Iterator[Item]:
-    """Two vehicles in a sentence that tells a contact, of whom no contact was read."""
+# ------------------------------------------------------------------ contacts and acts
+def _contact(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
+    """Two vehicles in a sentence about a contact, without a contact in the reading."""
     if sentence.role != "impact" or made.reading.crash.near_crash:
         return
     names = _named(made, sentence)
@@ -138,8 +138,8 @@ def _contact(made: Made, sentence: Sentence) -> Iterator[Item]:
         yield _lacks(sentence, "contact", who, f"a contact of {who} seems told", "nobody read it")
 
 
-def _deeds(made: Made, sentence: Sentence) -> Iterator[Item]:
-    """A turn, a change of lane or the like before the first contact that none of the named vehicles makes or means."""
+def _deeds(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
+    """A turn, lane change or the like before the first contact that no named vehicle makes or intends."""
     names = _named(made, sentence)
     vehicles = [v for v in made.reading.crash.vehicles if v.id in names]
     if not vehicles or sentence.start > _first_told(made):
@@ -153,7 +153,7 @@ def _deeds(made: Made, sentence: Sentence) -> Iterator[Item]:
 
 
 def _told_deeds(text: str) -> Iterator[tuple[str, str]]:
-    """(deed, words) of a sentence that tells what was done, not what could not be."""
+    """(act, words) of the acts that a sentence states."""
     if match := _TURNING.search(text):
         side = next((g for name, g in match.groupdict().items() if name.startswith("side") and g), "")
         yield f"turn_{side.lower()}", match[0].strip()
@@ -162,7 +162,7 @@ def _told_deeds(text: str) -> Iterator[tuple[str, str]]:
             yield str(deed.yields["deed"]), match[0].strip()
 
 
-def _first_told(made: Made) -> int:
-    """Where the sentence of the first contact begins; the text's end where none is told."""
+def _first_told(made: ExecutedCase) -> int:
+    """Start of the sentence of the first contact; beyond the text's end without one."""
     fact = made.told.get("contacts.0.striker")
     return fact.start if fact and fact.start is not None else len(made.reading.narrative) * 2

@@ -1,4 +1,4 @@
-"""What fields and values are called for people. Knows field names; no report and no scenario."""
+"""Names of fields and values for display. Knows field names; no report and no scenario."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ FIELDS = {
     "meant_maneuver": "means to", "exit_heading": "turns to", "heading": "heads", "maneuver": "maneuver",
     "lanes_total": "lanes in all", "striker_area": "striking side", "struck_area": "struck side",
 }  # fmt: skip
-"""What some fields are called; the others by their own names."""
+"""Display names of fields; other fields are shown by their own names."""
 UNITS = {"mph": " mph", "deg": " degrees", "m": " m"}
 
 
 def named(field: str) -> tuple[str, str]:
-    """Whom a field is about and what it is called: "vehicles.V1.rest.where" -> ("V1", "rest where")."""
+    """Subject and display name of a field: "vehicles.V1.rest.where" -> ("V1", "rest where")."""
     kind, *rest = field.split(".")
     if kind in ("vehicles", "others") and rest:
         return rest[0], _called(rest[1:])

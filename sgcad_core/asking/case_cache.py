@@ -1,4 +1,4 @@
-"""What a writer works out once a case and needs again at every further attempt. Knows no plugin."""
+"""Values that a writer computes once per case and uses in every attempt. Knows no plugin."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from sgcad_core.case.records import Context
 
 T = TypeVar("T")
 KEPT = 256
-"""Cases under way at a time in one process, with room to spare."""
+"""More than the cases that one process works on at a time."""
 
 
-class OncePerCase(Generic[T]):
-    """Remembers a value by the evidence it was made from. A first attempt always makes it anew. Thread-safe."""
+class CaseCache(Generic[T]):
+    """Keeps values by the evidence that they were made from; a first attempt always makes a new one. Thread-safe."""
 
     def __init__(self) -> None:
         self._known: OrderedDict[str, T] = OrderedDict()

@@ -40,7 +40,7 @@ class _Ended(Exception):
     """The text stops before the value does."""
 
 
-def spans(text: str) -> list[Span]:
+def field_spans(text: str) -> list[Span]:
     """Every leaf value (quotes included) and every list's structure, in order of the text.
 
     Of a text that breaks off, the fields up to there; a text that is no JSON gives what was read.
@@ -70,7 +70,7 @@ def grounding(
     `ends[i]` is where token i ends in `text`; a token that runs over several fields counts to the first.
     """
     found: dict[str, float] = {}
-    fields = iter(spans(text))
+    fields = iter(field_spans(text))
     span = next(fields, None)
     start = 0
     for end, with_, without in zip(ends, with_context, without_context, strict=True):
@@ -85,7 +85,7 @@ def grounding(
 
 def first_tokens(text: str, ends: Sequence[int]) -> dict[str, int]:
     """By path: which token a field begins in. `ends[i]` is where token i ends in `text`."""
-    return {span.path: bisect_right(ends, span.start) for span in reversed(spans(text))}
+    return {span.path: bisect_right(ends, span.start) for span in reversed(field_spans(text))}
 
 
 def name_of(path: str) -> str:

@@ -103,7 +103,7 @@ def parse_answer(text: str, model: type[Answer]) -> Answer:
         return model.model_validate(found)
     except ValidationError as fault:
         findings = [_at_fault(error) for error in _root_causes(fault.errors(include_url=False))]
-        raise InvalidOutput("\n".join(f.line() for f in findings), findings) from fault
+        raise InvalidOutput.of(*findings) from fault
 
 
 def _answer_object(text: str, fields: set[str]) -> Json:
@@ -133,10 +133,8 @@ def _objects(text: str, attempts: int = 200) -> Iterator[Json]:
 
 
 def _unreadable(what: str, text: str) -> InvalidOutput:
-    finding = Finding(
-        source="answer", what=what, where="$", value=_short(text), remedy="answer with one JSON object of the schema"
-    )
-    return InvalidOutput(finding.line(), [finding])
+    remedy = "answer with one JSON object of the schema"
+    return InvalidOutput.of(Finding(source="answer", what=what, where="$", value=_short(text), remedy=remedy))
 
 
 def _refused(found: Json) -> Refused:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from sgcad_core.asking.prompts import repair_text
-from sgcad_core.asking.schema_holds import narrowed
+from sgcad_core.asking.schema_holds import narrowed_schema
 from sgcad_core.case.records import (
     Attempt,
     Context,
@@ -30,12 +30,12 @@ from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.interfaces import Ask, Validator
 
 MAX_ATTEMPTS = 10
-"""Limit of attempts a stage; configs may set fewer."""
+"""Most attempts of a stage; configs may set fewer."""
 DOUBTFUL_ATTEMPTS = 3
-"""Attempts from the first usable artifact on, of which the least doubtful is taken."""
+"""Attempts from the first usable artifact on; the one with the fewest doubts is taken."""
 
 _ASKING = ("repair", "doubt")
-"""Severities of findings that the writer is asked again for."""
+"""Severities of findings that start another attempt."""
 
 Artifact = RoadNetwork | Scenario
 Write = Callable[[tuple[Finding, ...], Ask, int], Artifact]
@@ -101,7 +101,7 @@ class _Recorder:
     def __call__(self, context: Context, query: Query) -> Generation:
         labeled = query.model_copy(update=self.label)
         if self.holds and query.answer_schema is not None:
-            labeled = labeled.model_copy(update={"answer_schema": narrowed(query.answer_schema, self.holds)})
+            labeled = labeled.model_copy(update={"answer_schema": narrowed_schema(query.answer_schema, self.holds)})
         self.queries.append(labeled)
         generation = self.ask(context, labeled)
         self.calls.append(Call(labeled, generation))
@@ -120,7 +120,7 @@ def run_at_once(name: str, turn: Callable[[], Turn]) -> Turn:
 
 @dataclass(frozen=True)
 class Refinement:
-    """What one stage needs to be refined: how to write, who judges, how often at most.
+    """The parts of one stage's refinement: writer, validators, limits.
 
     `ask` is None for a writer that asks no model. `evidence_of` gives the validators the evidence for the
     attempt's last generation (None without a model).
@@ -162,7 +162,7 @@ class Refinement:
         return since >= DOUBTFUL_ATTEMPTS or not self._helped(turns[-1])
 
     def _helped(self, turn: Turn) -> bool:
-        """Whether the next attempt will be another one for its doubts: it is told them, or held to their remedy."""
+        """Whether the doubts change the next attempt: they are shown to the model, or narrow its schema."""
         doubts = [f for f in turn.attempt.findings if f.severity == "doubt"]
         return not turn.usable or self.show_findings or (self.hold_findings and any(f.holds for f in doubts))
 

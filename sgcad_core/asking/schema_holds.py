@@ -1,6 +1,6 @@
-"""Findings as grammar: an answer's JSON schema narrowed to what validators already know.
+"""An answer's JSON schema narrowed by the findings of validators.
 
-A model too small to read findings would draw again and hope; a decoder under a grammar can be made unable to repeat the
+A model too small to use findings would repeat a fault by chance; a decoder under a narrowed grammar cannot repeat the
 fault. What findings leave open is still the model's. Knows schemas and holds; no validator, no model.
 """
 
@@ -19,13 +19,13 @@ SOME_LANES = tuple(range(1, 9))
 """Lanes one way that a leg of a layout may have, if it has any."""
 
 
-def narrowed(schema: Mapping[str, Any], holds: Sequence[Hold]) -> Json:
+def narrowed_schema(schema: Mapping[str, Any], holds: Sequence[Hold]) -> Json:
     """The schema with every hold that it can meet; others, and lists that it does not have, are passed over.
 
     Branches of `anyOf` are narrowed each, so that a refusal stays a way out.
     """
     if "anyOf" in schema:
-        return {**schema, "anyOf": [narrowed(branch, holds) for branch in schema["anyOf"]]}
+        return {**schema, "anyOf": [narrowed_schema(branch, holds) for branch in schema["anyOf"]]}
     fields = dict(schema.get("properties") or {})
     for hold in holds:
         if fields.get(hold.items, {}).get("type") == "array":

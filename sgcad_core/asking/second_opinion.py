@@ -1,5 +1,5 @@
-"""A second opinion of a crash: a model's of its gist or of all of it, or that of the reader that learned where the
-rules err.
+"""A second opinion of a crash: a model's answers to seven questions or to the whole report, or the corrections of the
+learned reader.
 
 The weights of a model's answers stand beside the prompt (configs/prompts/<prompt>.json), since they are of a question
 and its model. Knows no model.
@@ -28,7 +28,7 @@ from sgcad_core.roads.describe import road_ids
 from sgcad_core.roads.layout import road_spec
 
 
-def seconded(report: CrashReport, prompt: str, ask: Ask) -> CrashReport:
+def with_gist_opinion(report: CrashReport, prompt: str, ask: Ask) -> CrashReport:
     """The report with the model's opinion; without one where the model has no answer. Raises ConfigError for a prompt
     or weights that there are not."""
     weights = load_weights(prompt)
@@ -43,13 +43,13 @@ def seconded(report: CrashReport, prompt: str, ask: Ask) -> CrashReport:
     return report.model_copy(update={"opinion": Opinion(heard=heard, weights=weights)})
 
 
-def corrected(report: CrashReport) -> CrashReport:
+def with_learned_opinion(report: CrashReport) -> CrashReport:
     """The report with the learned reader's opinion; without one where it has none. Raises ConfigError: no weights."""
     said = learned_reader.opinion(report.narrative)
     return report if said is None else report.model_copy(update={"opinion": said})
 
 
-def whole(report: CrashReport, ask: Ask) -> CrashReport:
+def with_model_opinion(report: CrashReport, ask: Ask) -> CrashReport:
     """The report with the model's answers to all of it; without an opinion where the model has no answer, and where
     nobody is numbered. Raises ConfigError for weights that there are not."""
     if report.reading.crash.unnumbered:

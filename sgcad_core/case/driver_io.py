@@ -1,4 +1,4 @@
-"""What a driver sees and answers, 20 times a second: the records between a hand-over and the plugin kind `driver`.
+"""Inputs and outputs of a driver, 20 times a second: the records between a hand-over and the plugin kind `driver`.
 
 A `Task` stands for the whole drive, a `View` for one instant, a `Command` for what the driver does until the next.
 Knows numpy and specs; no simulation. SI units, radians counter-clockwise from east, points are box centers.
@@ -40,7 +40,7 @@ class RoadUser(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Way:
-    """The line that the ego means to drive, and how the report's driver drove it: n samples, 0.05 s apart.
+    """The intended line of the ego and the motion of the report's driver on it: n samples, 0.05 s apart.
 
     Where the report's driver was stopped by the contact, the line goes on as it would have.
     """
@@ -70,15 +70,15 @@ class Way:
         return np.column_stack([np.interp(t_s, self.t_s, self.pose[:, i]) for i in range(3)])
 
     def speed_at(self, t_s: float) -> float:
-        """How fast the report's driver was at a script time."""
+        """Speed of the report's driver at a script time."""
         return float(np.interp(t_s, self.t_s, self.speed_mps))
 
     def station_at(self, t_s: float) -> float:
-        """Where the report's driver was at a script time."""
+        """Station of the report's driver at a script time."""
         return float(np.interp(t_s, self.t_s, self.s_m))
 
     def times_at(self, s_m: float) -> tuple[float, float]:
-        """From when until when the report's driver was at a station (one time but where he stood)."""
+        """First and last time of the report's driver at a station (equal unless the vehicle stood there)."""
         low = int(np.searchsorted(self.s_m, s_m - 1e-3, side="left"))
         high = int(np.searchsorted(self.s_m, s_m + 1e-3, side="right")) - 1
         if high < low:  # between two samples
@@ -98,7 +98,7 @@ class Way:
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """What a driver is told when taking the seat."""
+    """The inputs of a driver at the start of a drive."""
 
     ego: RoadUser
     way: Way
@@ -112,7 +112,7 @@ class Task:
 
 
 class View(NamedTuple):
-    """One instant as the driver sees it."""
+    """The driver's observation at one instant."""
 
     t_s: float
     """Since the hand-over."""
@@ -125,7 +125,7 @@ class View(NamedTuple):
 
 
 class Command(NamedTuple):
-    """What the driver does until the next view.
+    """The driver's control input until the next view.
 
     Without steering the vehicle keeps to its way; with it (angle of the front wheels, left positive) it goes as a
     kinematic bicycle; `pose` (x, y, heading, speed) is where it is at the next instant, whatever the rest says.
@@ -137,18 +137,18 @@ class Command(NamedTuple):
 
 
 class Seat(ABC):
-    """A driver at the wheel for one drive; keeps what he has seen."""
+    """A driver during one drive; may keep state between views."""
 
     @abstractmethod
     def act(self, view: View) -> Command:
-        """What to do until the next view. Raises SimulationFailed where the driver is gone."""
+        """The command until the next view. Raises SimulationFailed where the driver is gone."""
 
     def leave(self) -> None:
-        """The drive is over."""
+        """Called at the end of the drive."""
         return
 
 
-def followed(task: Task, view: View) -> float:
-    """The acceleration with which the report's driver went on from here, m/s2."""
+def script_acceleration(task: Task, view: View) -> float:
+    """Acceleration of the report's driver at this station, m/s2."""
     wanted = task.way.speed_at(view.script_s + STEP_S)
     return (wanted - view.ego.speed_mps) / STEP_S

@@ -27,13 +27,13 @@ class Diagram(Record):
     height_px: int
 
 
-class ReadOnce(Record):
-    """A narrative that is read at most once (`reading`, a cached property). Fields alone are pickled and compared."""
+class NarrativeRecord(Record):
+    """A record whose narrative is read once (`reading`, a cached property); only fields are pickled and compared."""
 
     narrative: str
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """A copy; of another narrative nothing has been read yet."""
+        """A copy, without the reading where fields change."""
         copied = super().model_copy(update=update, deep=deep)
         if update:
             copied.__dict__.pop("reading", None)
@@ -44,7 +44,7 @@ class ReadOnce(Record):
         return state | {"__dict__": {k: v for k, v in state["__dict__"].items() if k != "reading"}}
 
 
-class CrashReport(ReadOnce):
+class CrashReport(NarrativeRecord):
     """What is known of one crash. `coded` is None unless the config sets use_coded_fields."""
 
     case: str
@@ -52,15 +52,15 @@ class CrashReport(ReadOnce):
     diagrams: tuple[Diagram, ...] = ()
     coded: Mapping[str, Any] | None = None
     notes: tuple[str, ...] = ()
-    """What the reader changed or left out, for result.json and the log."""
+    """Changes and omissions of the reader, for result.json and the log."""
     edits: tuple[Edit, ...] = ()
-    """What people know better than the reading; they win over it (`sgcad_core.revision`)."""
+    """Facts given by persons; they replace those of the reading (`sgcad_core.revision`)."""
     places: tuple[tuple[int, int, int], ...] = Field((), repr=False)
     """Where the narrative stands in the text as it was written (`sgcad_core.reading.text.traced_text.runs`); (): as it
     is."""
 
     opinion: Opinion | None = None
-    """What a model says of the crash's gist, where a config asks for a second opinion."""
+    """The second opinion, where a config asks for one."""
 
     @cached_property
     def reading(self) -> Reading:
@@ -84,7 +84,7 @@ class CrashReport(ReadOnce):
         return with_edits(found, self.edits)
 
 
-class Context(ReadOnce):
+class Context(NarrativeRecord):
     """CAD's c: the crash evidence, which the context-free row does not see."""
 
     narrative: str
@@ -99,7 +99,7 @@ class Context(ReadOnce):
 
     @cached_property
     def reading(self) -> Reading:
-        """What the rules read of the narrative."""
+        """The rules' reading of the narrative."""
         from sgcad_core.reading.reading import read
 
         return read(self.narrative)

@@ -73,7 +73,7 @@ class Token(Record):
 
 
 class Generation(Record):
-    """A model's answer and what it cost."""
+    """A model's answer with its tokens and cost."""
 
     text: str
     tokens: tuple[Token, ...] = ()
@@ -108,7 +108,7 @@ class RoadNetwork(Record):
     net_xml: str | None = Field(None, repr=False)
     xodr: str | None = Field(None, repr=False)
     log: str = ""
-    """netconvert's own words."""
+    """The messages of netconvert."""
     returncode: int = 0
 
 
@@ -189,7 +189,7 @@ class Scenario(Record):
     behavior: BehaviorSpec | None = None
     declared: Contact | None = None
     near_crash: NearCrash | None = None
-    """Of a report in which nobody touches; `declared` is then None."""
+    """Of a report without a contact; `declared` is then None."""
     planned: tuple[Trajectory, ...] = Field((), repr=False)
     oddity: float = 0.0
     """How far from ordinary driving the actors must go to meet as declared (`Plan.oddity`)."""
@@ -197,7 +197,7 @@ class Scenario(Record):
 
 
 class Execution(Record):
-    """What a simulator saw."""
+    """The result of a simulator: trajectories and the first contact."""
 
     simulator: str
     trajectories: tuple[Trajectory, ...] = Field(repr=False)
@@ -205,12 +205,12 @@ class Execution(Record):
     """First contact between any two actors that move or are struck; None if nothing touched."""
     log: str = ""
     complaints: tuple[str, ...] = ()
-    """What the simulator said that it cannot do, though it ran."""
+    """Features that the simulator reported as unsupported, though it ran."""
 
 
 # ------------------------------------------------------------------ judgement
 class Evidence(Record):
-    """What a validator may compare an artifact with."""
+    """The evidence that a validator compares an artifact with."""
 
     report: CrashReport
     """With `reading`: what the rules read of it."""
@@ -227,7 +227,7 @@ class Attempt(Record):
     prompt: str = ""
     answer: str = ""
     held: tuple[Hold, ...] = ()
-    """What its answer was held to by the findings before it."""
+    """Restrictions of its answer's schema by earlier findings."""
     findings: tuple[Finding, ...] = ()
     generation: Generation | None = None
     seconds: float = 0.0

@@ -1,4 +1,4 @@
-"""What a tracker is told of a config before its first case: one arm of a comparison. Knows no plugin and no flow."""
+"""A tracker's record of a config before its first case: one arm of a comparison. Knows no plugin and no flow."""
 
 from __future__ import annotations
 

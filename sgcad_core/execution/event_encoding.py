@@ -16,7 +16,7 @@ from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory
 from sgcad_core.execution.contact import first_contact
 from sgcad_core.formats.opendrive.signals import Controller
 from sgcad_core.formats.openscenario.playing.player import play
-from sgcad_core.formats.openscenario.writing.events import Handover, Plainly
+from sgcad_core.formats.openscenario.writing.events import EventOptions, Fallbacks
 from sgcad_core.formats.openscenario.writing.writer import Version, write_xosc
 from sgcad_core.records.specs import BehaviorSpec
 
@@ -30,7 +30,7 @@ def write_editable(
     actors: Sequence[ActorInfo],
     trajectories: Sequence[Trajectory],
     behavior: BehaviorSpec | None,
-    handover: Handover,
+    handover: EventOptions,
     version: Version,
     signals: Sequence[Controller] = (),
 ) -> str:
@@ -45,7 +45,7 @@ def write_editable(
         told = plainer
 
 
-def _plainer(told: Plainly, astray: frozenset[str], text: str) -> Plainly:
+def _plainer(told: Fallbacks, astray: frozenset[str], text: str) -> Fallbacks:
     """The next plainer form for the actors off the plan; the same where there is none."""
     if not told.alone and "<SynchronizeAction" in text:
         return replace(told, alone=True)

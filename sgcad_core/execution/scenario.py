@@ -8,8 +8,8 @@ from sgcad_core.case.records import ActorInfo, Finding, Hold, RoadNetwork, Scena
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.event_encoding import write_editable
 from sgcad_core.execution.signals import signal_times
-from sgcad_core.findings import Finder
-from sgcad_core.formats.openscenario.writing.events import Handover
+from sgcad_core.findings import FindingFactory
+from sgcad_core.formats.openscenario.writing.events import EventOptions
 from sgcad_core.formats.openscenario.writing.writer import (
     DEFAULT_ENCODING,
     DEFAULT_VERSION,
@@ -23,7 +23,7 @@ from sgcad_core.planner import plan
 from sgcad_core.records.course import NOTHING_TOLD, Courses
 from sgcad_core.records.specs import BehaviorSpec, size_m
 
-_finding = Finder("scenario")
+_finding = FindingFactory("scenario")
 
 
 def compile_scenario(
@@ -54,7 +54,7 @@ def compile_scenario(
     times = signal_times(network, origins, signals or {}, planned.contact.t_s if planned.contact else None)
     plan_of = actors, planned.trajectories, behavior
     if encoding == "events":
-        xosc = write_editable(*plan_of, Handover(planned.contact, network.xodr), version, times.controllers)
+        xosc = write_editable(*plan_of, EventOptions(planned.contact, network.xodr), version, times.controllers)
     else:
         xosc = write_xosc(*plan_of, version=version, signals=times.controllers)
     return Scenario(

@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 
 from sgcad_core.case.records import RoadNetwork, Trajectory
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.opendrive.signals import HEAD, Control, Controller, Signal, control_of
 from sgcad_core.formats.opendrive.streets import streets
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose
 from sgcad_core.formats.openscenario.roads.lane_motion import driven_way
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads, roads_of
 from sgcad_core.formats.openscenario.roads.way import LanePlace, Way

@@ -1,4 +1,4 @@
-"""Whether a .net.xml and a .xodr describe the same roads. Knows both formats, no scenario."""
+"""Checks whether a .net.xml and a .xodr describe the same roads. Knows both formats, no scenario."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from sgcad_core.case.records import Finding
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.opendrive.checks.road_index import RoadIndex, lane_index
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads, roads_of
 from sgcad_core.geometry.distances import distance_to
@@ -21,7 +21,7 @@ UNEVEN_M = 8.0
 MAX_EDGES = 12
 """Edges whose lanes are compared; evenly taken from all."""
 _REMEDY = "write both files in one run of netconvert"
-_finding = Finder("agreement", where="road network", remedy=_REMEDY)
+_finding = FindingFactory("agreement", where="road network", remedy=_REMEDY)
 
 
 def network_disagreements(graph: LaneGraph, xodr: str) -> list[Finding]:

@@ -7,12 +7,15 @@ writes may hold an external entity or a billion laughs.
 from __future__ import annotations
 
 import threading
+from functools import cache
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
 from typing import Any
 
 from lxml import etree
 
 from sgcad_core.case.records import Finding
-from sgcad_core.errors import InvalidOutput
+from sgcad_core.errors import InvalidOutput, MissingTool
 
 _SCHEMA_LOCK = threading.Lock()
 Element = Any
@@ -38,6 +41,24 @@ def to_text(root: Element) -> str:
     return etree.tostring(root, xml_declaration=True, encoding="UTF-8").decode("utf-8")
 
 
+@cache
+def xml_schema(file: Path) -> etree.XMLSchema:
+    """A compiled schema file."""
+    return etree.XMLSchema(etree.parse(str(file), etree.XMLParser(no_network=True)))
+
+
+@cache
+def asam_schema(name: str) -> etree.XMLSchema:
+    """A schema of ASAM's that the package scenariogeneration brings. Raises MissingTool without that package."""
+    try:
+        return xml_schema(Path(str(distribution("scenariogeneration").locate_file(f"schemas/{name}.xsd"))))
+    except PackageNotFoundError as fault:
+        message = (
+            "the schemas of OpenDRIVE and OpenSCENARIO come with scenariogeneration: `pip install scenariogeneration`"
+        )
+        raise MissingTool(message) from fault
+
+
 def schema_errors(schema: etree.XMLSchema, root: Element, most: int = 20) -> list[tuple[int, str]]:
     """(line, message) of the first faults that a compiled schema finds; empty where it finds none."""
     with _SCHEMA_LOCK:  # a schema object keeps its log: two threads would read each other's
@@ -48,5 +69,4 @@ def schema_errors(schema: etree.XMLSchema, root: Element, most: int = 20) -> lis
 
 
 def _invalid(what: str, fault: str, where: str, remedy: str) -> InvalidOutput:
-    finding = Finding(source=what, what=fault, where=where, remedy=remedy)
-    return InvalidOutput(finding.line(), [finding])
+    return InvalidOutput.of(Finding(source=what, what=fault, where=where, remedy=remedy))

@@ -1,4 +1,4 @@
-"""What every spec is that a model may answer in, and its JSON schema as the embedded model learned it.
+"""The base of all specs that a model answers in, and their JSON schemas as the embedded model learned them.
 
 Specs grow: fields are `added`, others are marked with what they were (`TRAINED`). A model whose weights know the former
 schema is asked for that one, since another word in its prompt is one that it has never seen. Knows pydantic only.

@@ -1,4 +1,4 @@
-"""What a report tells of the whole course of a crash, beside who strikes whom: evasion, loss of control, rest.
+"""Facts of a report on the course of a crash, beside its contacts: evasion, loss of control, rest.
 
 Records that no field of a spec holds: specs are answers, these are read by rules. Compass angles are clockwise degrees
 from north. Knows no text, no network and no motion.
@@ -15,7 +15,7 @@ from sgcad_core.records.specs import Area, Compass
 
 Where = Literal["road", "intersection", "shoulder", "median", "off_road"]
 Attitude = Literal["wheels", "roof", "left", "right"]
-"""On what a vehicle lies at last: its wheels, its roof, its left or right side."""
+"""The part that a vehicle rests on: wheels, roof, left or right side."""
 Spin = Literal["clockwise", "counterclockwise"]
 Hand = Literal["left", "right"]
 Steering = Literal["left", "right", "either"]
@@ -23,7 +23,7 @@ Steering = Literal["left", "right", "either"]
 
 @dataclass(frozen=True)
 class RestTold:
-    """Where and how a vehicle came to rest; None: not told."""
+    """Place and attitude of a vehicle at rest; None: not stated."""
 
     facing_deg: float | None = None
     where: Where | None = None
@@ -35,13 +35,13 @@ class RestTold:
 
     @property
     def empty(self) -> bool:
-        """Whether nothing is told."""
+        """Whether nothing is stated."""
         return self == RestTold()
 
 
 @dataclass(frozen=True)
 class CourseTold:
-    """What one vehicle did beside its maneuver, as told."""
+    """Stated acts of one vehicle beside its maneuver."""
 
     brakes: bool = False
     """Before its first contact."""
@@ -58,7 +58,7 @@ class CourseTold:
 
     @property
     def empty(self) -> bool:
-        """Whether nothing is told."""
+        """Whether nothing is stated."""
         return self == CourseTold()
 
 

@@ -1,7 +1,7 @@
-"""One fact of a crash as a person gives it, and which of several given facts count.
+"""Edits: facts of a crash given by a person, and which of several edits are effective.
 
 Edits are a history: a later one of the same field takes the place of an earlier one, and one that says `AS_READ` gives
-the field back to whoever read the report. Knows which names mean the same field; no spec, no file.
+the field back to the reading. Knows which names mean the same field; no spec, no file.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _ACTORS = re.compile(r"(?:(?:actors|vehicles|others)\.)?([A-Za-z]\d+)(?:\.(\w+))
 
 
 class Edit(Record):
-    """A person's fact: it wins over every reader and every writer."""
+    """A fact given by a person, which outranks every reader and writer."""
 
     field: str = Field(min_length=1, max_length=120)
     """A dotted name as result.json's facts have it, such as "roads.N.lanes_forward" (see `sgcad_core.revision`)."""

@@ -1,4 +1,4 @@
-"""What a second reader says of a crash beside the rules, and how it is weighed. Plain records: knows no reader."""
+"""A second reader's values for a crash and their weights against the rules. Plain records: knows no reader."""
 
 from __future__ import annotations
 
@@ -56,13 +56,13 @@ class Answered(Record):
     """Probability of each value by its path ("road.legs[0].lanes_in", "crash.actors[1].maneuver"); no entry: 1, since
     nothing was chosen. Empty: nothing is known."""
     nats: Mapping[str, float] = {}
-    """Grounding of each value by the same path: log p(y|c,x) - log p(y|x). Empty: nobody asked without the report."""
+    """Grounding of each value by the same path: log p(y|c,x) - log p(y|x). Empty: not measured."""
     told: Mapping[str, float] = {}
     """Probability that the evidence tells each value, by the same path, of a model that has heads for it."""
 
 
 class Opinion(Record):
-    """What the second reader says, and how it is weighed against the rules. Fields without weights are the rules'."""
+    """The second reader's values and their weights against the rules. Fields without weights are the rules'."""
 
     heard: Mapping[str, Heard] = {}
     weights: Mapping[str, Weights] = {}

@@ -1,4 +1,4 @@
-"""A person's facts laid over a behavior: who takes part, how, where; who strikes whom; whether anybody does.
+"""Edits applied to a behavior: its actors and their motion, its contacts, whether it is a near crash.
 
 What hangs on a changed fact follows: another heading is another road, another maneuver another exit. What an edit asks
 for and the behavior has already stays untouched; an edit that cannot be laid is left out here, and
@@ -29,8 +29,8 @@ _MISFIT_RAD = 0.75 * math.pi / 2
 _TURNS: Mapping[Maneuver, float] = {"turn_left": math.pi / 2, "turn_right": -math.pi / 2}
 
 
-def laid_behavior(behavior: BehaviorSpec, spec: RoadSpec, given: Mapping[str, Value]) -> BehaviorSpec:
-    """The behavior with a person's values (field -> value), as far as they can be laid over it."""
+def behavior_with_edits(behavior: BehaviorSpec, spec: RoadSpec, given: Mapping[str, Value]) -> BehaviorSpec:
+    """The behavior with edited values (field -> value), as far as they can be applied."""
     behavior = _cast(behavior, spec, given)
     for name, fields in _by_actor(given).items():
         actor = actor_of(behavior, name)
@@ -56,9 +56,9 @@ def _replaced(behavior: BehaviorSpec, actor: Actor) -> BehaviorSpec:
     return behavior.model_copy(update={"actors": tuple(actor if a.id == actor.id else a for a in behavior.actors)})
 
 
-# ------------------------------------------------------------------ who takes part
+# ------------------------------------------------------------------ actors added and removed
 def _cast(behavior: BehaviorSpec, spec: RoadSpec, given: Mapping[str, Value]) -> BehaviorSpec:
-    """The actors who were added, without those who were taken out; their contacts go with them."""
+    """The behavior with added actors and without removed ones and their contacts."""
     for name, fields in _by_actor(given).items():
         present, known = fields.get("present"), actor_of(behavior, name)
         if present is False and known and len(behavior.actors) > 1:
@@ -202,7 +202,7 @@ def _avoided(behavior: BehaviorSpec, conflict: Contact, given: Mapping[str, Valu
 
 
 def _struck(known: Contact | None, fields: Mapping[str, Value], behavior: BehaviorSpec) -> Contact | None:
-    """A contact with the edited fields. Who strikes whom may be turned around by naming one of both: the sides stay
+    """A contact with the edited fields. Naming one of both may exchange striker and struck: the sides stay
     with their vehicles."""
     said = {name: fields[name] for name in CONTACT_FIELDS if name in fields}
     start = known.model_dump() if known else {"striker_area": "front", "struck_area": "front"}

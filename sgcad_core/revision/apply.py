@@ -1,4 +1,4 @@
-"""A person's facts laid over what a writer wrote: the network is drawn, the scenario planned anew where they differ.
+"""Edits applied to a writer's artifacts: network and scenario are compiled again where the edits differ from them.
 
 Works on any artifact that carries its spec (`RoadNetwork.spec`, `Scenario.behavior`); one that carries none passes
 as it is, and `standing` says so. Knows how specs become files; no writer and no config.
@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from sgcad_core.case.records import RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.openscenario.writing.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
@@ -21,18 +21,18 @@ from sgcad_core.reading.reading import Reading
 from sgcad_core.reading.roads.told_roads import told_roads
 from sgcad_core.records.edits import Edit, values
 from sgcad_core.records.specs import RoadSpec
-from sgcad_core.revision.actors import laid_behavior
-from sgcad_core.revision.roads import laid_roads
+from sgcad_core.revision.actors import behavior_with_edits
+from sgcad_core.revision.roads import roads_with_edits
 
-_finding = Finder("facts")
+_finding = FindingFactory("facts")
 
 
-def lay_road(network: RoadNetwork, reading: Reading, edits: Sequence[Edit]) -> RoadNetwork:
+def apply_road_edits(network: RoadNetwork, reading: Reading, edits: Sequence[Edit]) -> RoadNetwork:
     """The network with the edits of its roads; the same one where nothing differs or it carries no spec."""
     given = {field: value for field, value in values(edits).items() if field.startswith(("roads.", "junction."))}
     if not given or network.spec is None:
         return network
-    spec = laid_roads(network.spec, network.layout, given)
+    spec = roads_with_edits(network.spec, network.layout, given)
     if spec == network.spec:
         return network
     told = {name: road._replace(posted=road.posted or f"roads.{name}.speed_limit_mph" in given)
@@ -41,7 +41,7 @@ def lay_road(network: RoadNetwork, reading: Reading, edits: Sequence[Edit]) -> R
     return made.model_copy(update={"source": network.source, "log": f"{network.log}\n{made.log}".strip()})
 
 
-def lay_scenario(
+def apply_scenario_edits(
     scenario: Scenario,
     network: RoadNetwork,
     reading: Reading,
@@ -57,7 +57,7 @@ def lay_scenario(
     spec = spec_of(network)
     if not given or scenario.behavior is None or spec is None:
         return scenario
-    behavior = laid_behavior(scenario.behavior, spec, given)
+    behavior = behavior_with_edits(scenario.behavior, spec, given)
     if behavior == scenario.behavior:
         return scenario
     if not behavior.contacts and not behavior.near_crash and (scenario.behavior.contacts or scenario.near_crash):

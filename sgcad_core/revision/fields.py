@@ -1,4 +1,4 @@
-"""What of a case a person may change: every field with its type, its choices and what it is now.
+"""Editable fields of a case: type, choices and present value.
 
 Types and limits are those of the specs' own fields, so that nothing is written down twice. Knows specs; no file and no
 network format.
@@ -225,7 +225,7 @@ def kind_of(field: str) -> Editable:
     raise WrongEdit(f"{field}: there is no such field{meant} `sgcad revise CASE --list` names them all")
 
 
-def checked(field: str, raw: object) -> tuple[str, Value]:
+def parsed_edit(field: str, raw: object) -> tuple[str, Value]:
     """Canonical name and typed value of an edit. Raises WrongEdit."""
     name = canonical(field)
     return name, kind_of(name).parsed(name, raw)

@@ -1,4 +1,4 @@
-"""facts.yaml beside a report: what people said of it, who, when and why. A strict, small file, replaced whole.
+"""facts.yaml beside a report: edits with author, time and reason. A strict, small file, replaced as a whole.
 
     for: 3f6c...           # fingerprint of the narrative that it was written for
     edits:
@@ -24,9 +24,9 @@ from pydantic import ValidationError
 
 from sgcad_core.errors import BadInput, ConfigError, WrongEdit
 from sgcad_core.records.edits import AS_READ, Edit
-from sgcad_core.revision.fields import checked
-from sgcad_core.system import locks
-from sgcad_core.system.report_files import FACTS, is_regular, read_regular
+from sgcad_core.revision.fields import parsed_edit
+from sgcad_core.system.locks import lock_file
+from sgcad_core.system.report_files import FACTS, LOCK, facts_file, is_regular, read_regular
 
 MOST_BYTES = 1_000_000
 MOST_EDITS = 2_000
@@ -90,7 +90,7 @@ def _edit(path: Path, number: int, row: Any) -> Edit:
     if not isinstance(row, dict) or "field" not in row or "value" not in row:
         raise BadInput(f"{at}: {row!r} is no edit: give field and value, and who, when and why")
     try:
-        name, value = checked(str(row["field"]), row["value"])
+        name, value = parsed_edit(str(row["field"]), row["value"])
         return Edit.model_validate({**row, "field": name, "value": value})
     except WrongEdit as fault:
         raise BadInput(f"{at}: {fault}") from fault
@@ -119,7 +119,11 @@ def write_edits(path: Path, edits: Sequence[Edit], digest: str = "") -> None:
                 os.unlink(partial)
             raise
     except OSError as fault:
-        raise ConfigError(f"{path}: cannot be written ({fault.strerror}); make the report's folder writable") from fault
+        raise _unwritable(path, fault) from fault
+
+
+def _unwritable(path: Path, fault: OSError) -> ConfigError:
+    return ConfigError(f"{path}: cannot be written ({fault.strerror}); make the report's folder writable")
 
 
 def _text(edits: Sequence[Edit], digest: str) -> str:
@@ -134,7 +138,7 @@ def _row(edit: Edit) -> dict[str, Any]:
     return {"field": edit.field, "value": value, "who": edit.who, "when": when, "why": edit.why}
 
 
-def merged(before: Sequence[Edit], new: Sequence[Edit]) -> tuple[Edit, ...]:
+def with_new_edits(before: Sequence[Edit], new: Sequence[Edit]) -> tuple[Edit, ...]:
     """The history with new edits behind; those that change nothing are left out."""
     found = list(before)
     for edit in new:
@@ -144,20 +148,24 @@ def merged(before: Sequence[Edit], new: Sequence[Edit]) -> tuple[Edit, ...]:
     return tuple(found)
 
 
-def undone(edits: Sequence[Edit]) -> tuple[Edit, ...]:
+def without_last_edits(edits: Sequence[Edit]) -> tuple[Edit, ...]:
     """The history without what was given last: all edits of that moment."""
     return tuple(e for e in edits if e.when != edits[-1].when) if edits else ()
 
 
 @contextmanager
-def alone(source: Path) -> Iterator[None]:
-    """Keep every other process from changing the facts of this report meanwhile; who waits goes on after.
+def facts_lock(source: Path) -> Iterator[None]:
+    """Keeps other processes from changing the facts of this report during the block; the next one waits.
 
-    The lock lies on the report's folder (or file) itself and leaves nothing there. Raises BadInput: it is gone.
+    Raises BadInput where the report is gone, ConfigError where its folder cannot be written.
     """
+    file = facts_file(source)
     with contextlib.ExitStack() as held:
         try:
-            held.enter_context(locks.alone(source))
+            source.stat()
+            held.enter_context(lock_file(file.with_name(f".{file.name}{LOCK}")))
+        except PermissionError as fault:
+            raise _unwritable(file, fault) from fault
         except OSError as fault:
             gone = f"{source}: the report is gone ({fault.strerror}): put it back, or name it with --report"
             raise BadInput(gone) from fault

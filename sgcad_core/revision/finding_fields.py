@@ -1,4 +1,4 @@
-"""Which editable fields a finding concerns, and the judges that a person's word overrules.
+"""Editable fields that a finding concerns, and validators that edits overrule.
 
 A validator that holds an artifact against the narrative has nothing to say where a person said otherwise: its finding
 stays as a note. What cannot be drawn, driven or simulated stays a fault, whoever asked for it.
@@ -13,7 +13,7 @@ from sgcad_core.interfaces import Validator
 from sgcad_core.records.edits import Edit, effective
 from sgcad_core.records.specs import BehaviorSpec, RoadSpec
 from sgcad_core.revision.fields import EDITABLE, kind_of
-from sgcad_core.revision.standing_edits import SOURCE, standing
+from sgcad_core.revision.standing_edits import SOURCE, unapplied_edits
 
 FROM_NARRATIVE = ("road_narrative", "behavior_narrative", "evidence_gate")
 """Sources of findings that hold an artifact against the evidence."""
@@ -21,11 +21,11 @@ _GATED = {
     "lanes": ("roads.",), "road layout": ("junction.",), "actors": ("vehicles.", "others."),
     "first contact": ("contacts.",),
 }  # fmt: skip
-"""What the evidence gate finds thin -> beginnings of the fields that a person may have told instead."""
+"""Missing evidence of the gate -> prefixes of the fields that an edit may give instead."""
 
 
-class Heeding(Validator):
-    """A validator whose findings yield to what a person says."""
+class OverruledValidator(Validator):
+    """A validator whose findings from the narrative become notes where an edit says otherwise."""
 
     inner: Validator
     edits: tuple[Edit, ...]
@@ -36,12 +36,12 @@ class Heeding(Validator):
         return self.inner.stage
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
-        """The validator's own, those that a person overrules as notes."""
-        return [yielding(f, self.edits) for f in self.inner.findings(artifact, evidence)]
+        """The inner validator's findings, overruled ones as notes."""
+        return [overruled(f, self.edits) for f in self.inner.findings(artifact, evidence)]
 
 
-class Standing(Validator):
-    """Doubts on edits that do not stand in what was written."""
+class UnappliedEdits(Validator):
+    """A validator with a doubt for each edit without effect."""
 
     edits: tuple[Edit, ...]
     stage = "both"
@@ -49,19 +49,19 @@ class Standing(Validator):
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """One an edit."""
         if isinstance(artifact, RoadNetwork):
-            return standing(self.edits, "road", artifact.spec)
+            return unapplied_edits(self.edits, "road", artifact.spec)
         network = evidence.network
-        return standing(self.edits, "scenario", network.spec if network else None, artifact.behavior)
+        return unapplied_edits(self.edits, "scenario", network.spec if network else None, artifact.behavior)
 
 
-def heeding(validators: Sequence[Validator], edits: Sequence[Edit]) -> tuple[Validator, ...]:
+def overruled_validators(validators: Sequence[Validator], edits: Sequence[Edit]) -> tuple[Validator, ...]:
     """Validators that a person overrules, and one that says which edits do not stand; the same ones without edits."""
     if not effective(edits):
         return tuple(validators)
-    return (*(Heeding(inner=v, edits=tuple(edits)) for v in validators), Standing(edits=tuple(edits)))
+    return (*(OverruledValidator(inner=v, edits=tuple(edits)) for v in validators), UnappliedEdits(edits=tuple(edits)))
 
 
-def yielding(finding: Finding, edits: Iterable[Edit]) -> Finding:
+def overruled(finding: Finding, edits: Iterable[Edit]) -> Finding:
     """A note in the place of a finding from the narrative that concerns an edited field."""
     if finding.source not in FROM_NARRATIVE or finding.severity == "note":
         return finding
@@ -80,7 +80,7 @@ def concerns(finding: Finding, field: str) -> bool:
     return kind_of(field).concerned(field, finding.where)
 
 
-def by_field(
+def findings_by_field(
     findings: Iterable[Finding], road: RoadSpec | None, behavior: BehaviorSpec | None, edits: Iterable[Edit] = ()
 ) -> Mapping[str, tuple[Finding, ...]]:
     """Field -> the findings that concern it; under "" those that concern no field of this case."""
@@ -94,4 +94,13 @@ def by_field(
     return {name: tuple(said) for name, said in found.items()}
 
 
-__all__ = ["EDITABLE", "FROM_NARRATIVE", "Heeding", "Standing", "by_field", "concerns", "heeding", "yielding"]
+__all__ = [
+    "EDITABLE",
+    "FROM_NARRATIVE",
+    "OverruledValidator",
+    "UnappliedEdits",
+    "concerns",
+    "findings_by_field",
+    "overruled",
+    "overruled_validators",
+]

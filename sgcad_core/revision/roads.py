@@ -1,4 +1,4 @@
-"""A person's facts laid over a road spec: junction, legs, lanes, limits, control, whoever drew it.
+"""Edits applied to a road spec: junction, legs, lanes, limits, control.
 
 What an edit asks for and the spec has already stays untouched. A network that was drawn from a layout is drawn anew
 where its junction becomes another one; any other spec gains and loses legs at its hub. An edit that cannot be laid is
@@ -26,8 +26,8 @@ _DRAWN_ANEW = (ROUNDABOUT, PARKING_LOT, RAMP)
 _SIGNS = ("stop", "yield")
 
 
-def laid_roads(spec: RoadSpec, layout: RoadLayout | None, given: Mapping[str, Value]) -> RoadSpec:
-    """The spec with a person's values (field -> value), as far as they can be laid over it."""
+def roads_with_edits(spec: RoadSpec, layout: RoadLayout | None, given: Mapping[str, Value]) -> RoadSpec:
+    """The spec with edited values (field -> value), as far as they can be applied."""
     spec = _with_junction(spec, layout, given)
     for field, value in given.items():
         name, _, attribute = field.removeprefix("roads.").partition(".")
@@ -78,7 +78,7 @@ def _main_axis(legs: Sequence[Compass], stem: Compass | None, roads: Mapping[Com
 
 
 def _sides(main: Compass, stem: Compass | None, kind: JunctionKind, beside: Sequence[Compass]) -> tuple[Compass, ...]:
-    """Bearings of the legs beside the main road: the stem told, one that is drawn, else at a right angle."""
+    """Bearings of the legs beside the main road: the stated stem, an existing leg, else a right angle."""
     drawn: Compass = next(iter(beside), turned(main, 90))
     first = stem or drawn
     return (first, turned(first, 180)) if junction_kind(kind).crossing else (first,)

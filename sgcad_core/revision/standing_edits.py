@@ -1,6 +1,6 @@
-"""Which of a person's facts stand in what was written, and why the others do not.
+"""Edits without effect on the written specs, and why.
 
-Compares values with specs, whoever wrote them; changes nothing. Knows specs; no file and no planner.
+Compares values with specs of any writer; changes nothing. Knows specs; no file and no planner.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sgcad_core.case.records import Finding, Stage
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.records.edits import Edit, effective
 from sgcad_core.records.specs import BehaviorSpec, RoadSpec
 from sgcad_core.revision.actors import goes
@@ -16,13 +16,13 @@ from sgcad_core.revision.fields import kind_of
 from sgcad_core.revision.values import actor_of, contacts_of, legs_of, road_of, value_of, way_of
 
 SOURCE = "facts"
-_finding = Finder(SOURCE)
+_finding = FindingFactory(SOURCE)
 
 
-def standing(
+def unapplied_edits(
     edits: Sequence[Edit], stage: Stage, road: RoadSpec | None, behavior: BehaviorSpec | None = None
 ) -> list[Finding]:
-    """One finding (a doubt) for every effective edit of a stage that does not stand in its specs."""
+    """One finding (a doubt) for every effective edit of a stage that its specs do not show."""
     found = []
     for edit in effective(edits):
         if kind_of(edit.field).stage == stage and (reason := fault(edit, road, behavior)):
@@ -33,7 +33,7 @@ def standing(
 
 
 def fault(edit: Edit, road: RoadSpec | None, behavior: BehaviorSpec | None) -> str:
-    """Why an edit does not stand; "" where it does."""
+    """The reason why an edit has no effect; "" where it has."""
     group, _, rest = edit.field.partition(".")
     if road is None and behavior is None:
         return "the writer of this config gives no spec that could be changed; use one of `spec`, `template`, `rules`"

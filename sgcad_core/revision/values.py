@@ -1,4 +1,4 @@
-"""What an editable field is in specs as they stand. Knows specs and their geometry; no edit and no narrative."""
+"""Present values of editable fields in specs. Knows specs and their geometry; no edit and no narrative."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CONTACT_FIELDS = ("striker", "struck", "striker_area", "struck_area")
 
 
 def value_of(field: str, road: RoadSpec | None, behavior: BehaviorSpec | None) -> Value:
-    """What a field is now; None where it is left open, or where there is no such road, actor or contact."""
+    """The present value of a field; None where it is open, or there is no such road, actor or contact."""
     group, _, rest = field.partition(".")
     if group == "junction":
         return _junction(rest, road) if road else None
@@ -102,7 +102,7 @@ def way_of(actor: Actor, spec: RoadSpec) -> Way | None:
 
 
 def hub_of(spec: RoadSpec) -> Node:
-    """The node where the crash is told from: where most roads meet, the nearest to the middle of equals."""
+    """The node where most roads meet; of equals the nearest to the origin."""
     return min(spec.nodes, key=lambda n: (-degree(n.id, spec), n.x_m**2 + n.y_m**2))
 
 

@@ -6,11 +6,11 @@ from collections import Counter
 from collections.abc import Iterator
 
 from sgcad_core.case.records import Finding
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.records.specs import Road, RoadSpec
 
 SOURCE = "road_spec"
-_finding = Finder(SOURCE)
+_finding = FindingFactory(SOURCE)
 
 
 def spec_findings(spec: RoadSpec) -> list[Finding]:

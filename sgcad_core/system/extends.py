@@ -18,7 +18,7 @@ from typing import Any
 import yaml
 
 from sgcad_core.errors import ConfigError
-from sgcad_core.near_names import nearest
+from sgcad_core.near_names import did_you_mean
 
 KEY = "extends"
 Merge = Callable[[Mapping[str, Any], Mapping[str, Any]], dict[str, Any]]
@@ -94,7 +94,7 @@ def _found(file: Path, name: Any, folders: Sequence[Path]) -> Path:
         places = " or ".join(f"{folder.name}/" for folder in folders)
         raise ConfigError(
             f"{file}: extends {name!r}: no such file beside it or under {places}."
-            f"{nearest(name, known)} In {folders[0].name}/: {', '.join(known)}"
+            f"{did_you_mean(name, known)} In {folders[0].name}/: {', '.join(known)}"
         )
     if base.resolve() == file.resolve():
         raise ConfigError(f"{file}: extends itself: name another YAML, or leave `extends` out and write it whole")
@@ -125,5 +125,5 @@ def _absent(place: str, key: Any, held: Mapping[str, Any]) -> str:
     known = [str(one) for one in held]
     return (
         f"{place}{key}: null removes a key of the base, and the base has none of this name."
-        f"{nearest(str(key), known)} The base has: {', '.join(known)}"
+        f"{did_you_mean(str(key), known)} The base has: {', '.join(known)}"
     )

@@ -1,20 +1,23 @@
-"""One process at a time: a lock on a file or folder that ends with its process and leaves nothing behind."""
+"""Lock files between processes, by the library filelock."""
 
 from __future__ import annotations
 
-import fcntl
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from filelock import FileLock
+
 
 @contextmanager
-def alone(path: Path, flags: int = os.O_RDONLY) -> Iterator[None]:
-    """Hold the lock of a file or folder; who waits goes on after. `flags`: of os.open. Raises OSError: not openable."""
-    held = os.open(path, flags | os.O_CLOEXEC, 0o644)
-    try:
-        fcntl.flock(held, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(held)
+def lock_file(path: Path, timeout_s: float = -1) -> Iterator[None]:
+    """Holds a lock file for the block, after its present holder; -1: waits without limit.
+
+    The lock ends with its process. The file is removed at the end of the block: processes that wait for it notice and
+    create it again. Raises OSError: the file cannot be created, or the time is over (`filelock.Timeout`).
+    """
+    with FileLock(path, timeout=timeout_s):
+        try:
+            yield
+        finally:
+            path.unlink(missing_ok=True)

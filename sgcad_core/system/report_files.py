@@ -1,4 +1,4 @@
-"""Files of a report, read as what a stranger may have sent: regular files inside the report's folder, and no others.
+"""Files of a report from an untrusted source: only regular files inside the report's folder are read.
 
 A link that leads out of the folder would copy a private file into the results; a pipe or a device would never end.
 Knows the file system; no format.
@@ -15,8 +15,10 @@ from sgcad_core.errors import BadInput
 MAX_FILE_BYTES = 50_000_000
 MAX_FILES = 1000
 """In a report's folder, those below it included: more is a folder of many reports, or a link to a whole disk."""
+LOCK = ".lock"
+"""Suffix of lock files."""
 FACTS = "facts.yaml"
-"""What people know better than the reading of a report, beside it (`sgcad_core.revision`)."""
+"""The file of edits, beside a report (`sgcad_core.revision`)."""
 
 
 def facts_file(source: Path) -> Path:
@@ -25,10 +27,10 @@ def facts_file(source: Path) -> Path:
 
 
 def files_below(folder: Path) -> list[Path]:
-    """Every file in a report's folder and its folders. Raises BadInput where there are more than a report has."""
+    """All files in a report's folder and below, lock files excepted. Raises BadInput: more than a report has."""
     found: list[Path] = []
     for looked, file in enumerate(folder.rglob("*")):
-        found += [file] if file.is_file() else []
+        found += [file] if file.is_file() and file.suffix != LOCK else []
         if looked >= MAX_FILES:
             raise BadInput(f"{folder}: more than {MAX_FILES} files and folders in it: give the folder of one report")
     return sorted(found)

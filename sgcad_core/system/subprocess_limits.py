@@ -17,7 +17,7 @@ MEMORY_MB, FILE_MB = 2_000, 200
 
 
 def ended_from_outside(code: int | None) -> bool:
-    """Whether an exit code of `subprocess` is that of a signal that no crash sends: somebody's kill, want of memory."""
+    """Whether an exit code of `subprocess` is that of a signal that no crash sends: a kill, or lack of memory."""
     return -(code or 0) in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 
 

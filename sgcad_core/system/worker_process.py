@@ -1,4 +1,4 @@
-"""A function in a process of its own, which may die without taking the batch along.
+"""A function in a process of its own, which may die without ending the batch.
 
     worker = Worker("plugins.simulator.libsumo:replay")       # starts nothing yet
     result = worker.call(net_xml, steps, timeout_s=30)         # replay(net_xml, steps) over there
@@ -16,17 +16,14 @@ from __future__ import annotations
 import gc
 import importlib
 import os
-import pickle
-import selectors
 import signal
-import struct
 import subprocess
 import sys
 import tempfile
 import threading
-import time
 import weakref
-from collections.abc import Callable
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
 from typing import IO, Any
 
 from sgcad_core import settings
@@ -35,7 +32,6 @@ from sgcad_core.system.subprocess_limits import ended_from_outside
 
 START_S = 60.0
 """Longest start: imports on a busy machine with a cold disk."""
-_HEADER = struct.Struct("!Q")
 _LAST_WORDS = 2000
 _COLLECTED = 20_000
 """So many objects more than went, and the worker's garbage is collected: trees of files make many that go by count."""
@@ -102,17 +98,18 @@ class _Process:
         self.owner = os.getpid()
         self.errors = _append_file()
         paths = os.pathsep.join(p for p in sys.path if p)
-        with settings.starting(sys.executable):
+        self.pipe, far_end = Pipe()
+        with settings.starting(sys.executable), far_end:
             self.popen = subprocess.Popen(  # noqa: S603 - our own interpreter and module
-                [sys.executable, "-m", "sgcad_core.system.worker_process", target],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
+                [sys.executable, "-m", "sgcad_core.system.worker_process", target, str(far_end.fileno())],
+                stdin=subprocess.DEVNULL,
+                stdout=self.errors,  # what the function or a C++ library prints
                 stderr=self.errors,
                 env=settings.subprocess_environment() | {"PYTHONPATH": paths},
                 start_new_session=True,  # Ctrl-C is for the parent, whose end closes the pipe
-                bufsize=0,
+                pass_fds=[far_end.fileno()],
             )
-        self.finalize = weakref.finalize(self, _end, self.popen, self.errors)
+        self.finalize = weakref.finalize(self, _end, self.popen, self.pipe, self.errors)
         self.ready = False
         self.busy = False
 
@@ -124,36 +121,24 @@ class _Process:
         """Send one call, wait for its answer: (True, result) or (False, SgcadError)."""
         self.busy = True
         if not self.ready:
-            self._read(time.monotonic() + START_S, f"did not start within {START_S:g} s")
+            self._receive(START_S, f"did not start within {START_S:g} s")
             self.ready = True
         self.errors.truncate(0)
-        assert self.popen.stdin is not None  # noqa: S101 - for the type checker
         try:
-            _write(self.popen.stdin.fileno(), args)
+            self.pipe.send(args)
         except BrokenPipeError as fault:
             raise _Died("") from fault
-        answer: tuple[bool, Any] = self._read(time.monotonic() + timeout_s, f"no answer within {timeout_s:g} s")
+        answer: tuple[bool, Any] = self._receive(timeout_s, f"no answer within {timeout_s:g} s")
         self.busy = False
         return answer
 
-    def _read(self, deadline: float, late: str) -> Any:
-        size = _HEADER.unpack(self._bytes(_HEADER.size, deadline, late))[0]
-        return pickle.loads(self._bytes(size, deadline, late))  # noqa: S301 - written by our own process
-
-    def _bytes(self, count: int, deadline: float, late: str) -> bytes:
-        assert self.popen.stdout is not None  # noqa: S101 - for the type checker
-        pipe, data = self.popen.stdout.fileno(), bytearray()
-        with selectors.DefaultSelector() as selector:
-            selector.register(pipe, selectors.EVENT_READ)
-            while len(data) < count:
-                left = deadline - time.monotonic()
-                if left <= 0 or not selector.select(left):
-                    raise _Died(late)
-                chunk = os.read(pipe, min(1 << 20, count - len(data)))
-                if not chunk:
-                    raise _Died("")
-                data += chunk
-        return bytes(data)
+    def _receive(self, timeout_s: float, late: str) -> Any:
+        if not self.pipe.poll(timeout_s):
+            raise _Died(late)
+        try:
+            return self.pipe.recv()
+        except (EOFError, ConnectionResetError) as fault:
+            raise _Died("") from fault
 
     def end(self, reason: str) -> str:
         """End the process and say how it ended, with its last words."""
@@ -183,50 +168,35 @@ def _append_file() -> IO[bytes]:
         os.unlink(path)
 
 
-def _end(process: subprocess.Popen[bytes], errors: IO[bytes]) -> None:
+def _end(process: subprocess.Popen[bytes], pipe: Connection[Any, Any], errors: IO[bytes]) -> None:
     process.kill()
     process.wait()
-    for pipe in (process.stdin, process.stdout, errors):
-        if pipe:
-            pipe.close()
+    pipe.close()
+    errors.close()
 
 
 # ------------------------------------------------------------------ the far end
-def _serve(target: str) -> None:
-    """Answer calls on standard input until it closes. Only SgcadErrors are answers; others end the process."""
-    answers = os.dup(1)
-    os.dup2(2, 1)  # prints of the function and of C++ libraries must not mix with the answers
-    function = _load(target)
-    _write(answers, "ready")
+def _serve(target: str, calls: Connection[Any, Any]) -> None:
+    """Answers calls until the pipe closes. Only SgcadErrors are answers; other errors end the process."""
+    module, _, name = target.partition(":")
+    function = getattr(importlib.import_module(module), name)
+    calls.send("ready")
     gc.set_threshold(_COLLECTED)
     while True:
-        header = sys.stdin.buffer.read(_HEADER.size)
-        if len(header) < _HEADER.size:
+        try:
+            args = calls.recv()
+        except EOFError:
             return
-        args = pickle.loads(sys.stdin.buffer.read(_HEADER.unpack(header)[0]))  # noqa: S301 - written by our parent
         try:
             answer = (True, function(*args))
         except SgcadError as fault:
             answer = (False, fault)
         sys.stdout.flush()
-        _write(answers, answer)
+        calls.send(answer)
         if not gc.get_freeze_count():  # what the first call imported stays: the collector need not walk it each time
             gc.collect()
             gc.freeze()
 
 
-def _load(target: str) -> Callable[..., Any]:
-    module, _, name = target.partition(":")
-    found: Callable[..., Any] = getattr(importlib.import_module(module), name)
-    return found
-
-
-def _write(pipe: int, value: Any) -> None:
-    data = pickle.dumps(value, protocol=pickle.HIGHEST_PROTOCOL)
-    rest = memoryview(_HEADER.pack(len(data)) + data)
-    while rest:
-        rest = rest[os.write(pipe, rest) :]
-
-
 if __name__ == "__main__":
-    _serve(sys.argv[1])
+    _serve(sys.argv[1], Connection(int(sys.argv[2])))

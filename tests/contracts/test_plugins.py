@@ -136,10 +136,10 @@ def test_a_strangers_code_is_part_of_its_identity_and_ours_is_not(monkeypatch, t
         (folder / "__init__.py").write_text("class Plug: ...\n")
         importlib.invalidate_caches()
         foreign_plugins._about.cache_clear()
-        seen.append(foreign_plugins.code_of(importlib.import_module("strange_pack").Plug))
+        seen.append(foreign_plugins.code_fingerprint(importlib.import_module("strange_pack").Plug))
     assert seen[0].split()[0] == "strange_pack"
     assert seen[0] != seen[1]  # a helper beside the plugin counts
-    assert foreign_plugins.code_of(registry.plugin_class("decoder", "cad")) == ""
+    assert foreign_plugins.code_fingerprint(registry.plugin_class("decoder", "cad")) == ""
 
 
 def test_a_module_that_cannot_be_imported_is_named(monkeypatch):

@@ -27,7 +27,7 @@ from flows.deploy.inbox.intake import Do, Intake, OnResult
 from flows.deploy.storage import Place
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 PORTION = 48
 """Reports claimed at a time: what a killed worker holds, and how often worker processes start anew."""
@@ -60,7 +60,7 @@ def inbox_flow(
             f"lease_s {lease_s}, portion {portion} not below or at 0"
         )
     place = Place(address)
-    with scratch("inbox") as staging:
+    with temp_folder("inbox") as staging:
         intake = Intake(place, Claims(place, lease_s), staging, settle_s, config, Path(out))
         return intake.work(_by_tasks(config, out, named, jobs), portion, wait_s, watch_s)
 

@@ -19,7 +19,7 @@ from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
 from sgcad_core.roads.junction_words import JunctionLeg, describe, marks
 from sgcad_core.roads.layout import COMPASS
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 from sgcad_core.units import MPS_PER_MPH
 
 CONTROLS = {
@@ -31,7 +31,7 @@ CONTROLS = {
 
 def junction_chunks(extract: Path, on_skip: Callable[[str, str], None]) -> Iterator[Chunk]:
     """A chunk for every junction of an extract; `on_skip` gets the name and the reason of each that cannot be cut."""
-    with scratch("osm") as folder:
+    with temp_folder("osm") as folder:
         graph = read_plain(*plain_of(extract, folder))
     source = extract.name.partition(".osm")[0]
     for node in graph.places:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -18,13 +17,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from filelock import FileLock
 
 from plugins.retriever.knowledge.chunk import Chunk
 from plugins.retriever.knowledge.embedders import Embedder
 from plugins.retriever.knowledge.manifest import MANIFEST, Manifest, read_manifest
 from sgcad_core.errors import ConfigError
-from sgcad_core.system.locks import alone
-from sgcad_core.system.temp_folders import beside
+from sgcad_core.system.temp_folders import folder_beside
 
 TABLE = "chunks"
 BATCH = 256
@@ -42,7 +41,7 @@ def build(folder: Path, chunks: Iterable[Chunk], embedder: Embedder | None, prog
     _check_place(folder)
     folder.parent.mkdir(parents=True, exist_ok=True)
     try:
-        with beside(folder) as partial:
+        with folder_beside(folder) as partial:
             dimension = _dimension(embedder)
             table = lancedb.connect(partial).create_table(TABLE, schema=_schema(dimension))
             _write(table, chunks, embedder, progress)
@@ -192,7 +191,7 @@ def _replace(partial: Path, folder: Path) -> None:
     if not folder.exists():
         partial.rename(folder)
         return
-    with beside(folder) as old:
+    with folder_beside(folder) as old:
         folder.rename(old / "old")
         partial.rename(folder)
 
@@ -201,5 +200,5 @@ def _replace(partial: Path, folder: Path) -> None:
 def _locked(folder: Path) -> Iterator[None]:
     """One addition at a time. Raises ConfigError where the folder holds no index."""
     read_manifest(folder)
-    with alone(folder / ".lock", os.O_RDWR | os.O_CREAT):
+    with FileLock(folder / ".lock"):
         yield

@@ -28,7 +28,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 Layer = Literal["parse", "rules", "execution", "limit"]
 MAX_ANSWER = 16_000_000
@@ -124,7 +124,7 @@ def run_script(
     limits = limits or Limits()
     started = time.monotonic()
     secret = secrets.token_hex(16)
-    with scratch("script") as folder:
+    with temp_folder("script") as folder:
         job = {
             "source": source, "folder": str(folder), "cpu_s": limits.cpu_s, "memory_mb": limits.memory_mb,
             "allow_without_namespace": allow_without_namespace, "unchecked": unchecked, "secret": secret,

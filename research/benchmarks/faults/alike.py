@@ -21,7 +21,7 @@ TIMES = re.compile(rb'"seconds": ?(\{[^{}]*\}|[0-9.eE+-]+)|"shared": ?\[[^\]]*\]
 """How long something took, and which stages another arm had done by then: both go by who was first."""
 SKIPPED = (".tracked", ".tracking", "links.json")
 """A tracker's marks hold when its database was made, links the ids of runs."""
-STAGED = re.compile(rb"sgcad-scratch-inbox-\w+")
+STAGED = re.compile(rb"sgcad-temp-inbox-\w+")
 """A folder of random name, in which the inbox keeps a copy of a report while it works on it."""
 
 

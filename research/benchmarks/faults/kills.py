@@ -120,7 +120,7 @@ def _doctor(place: Place) -> list[str]:
             said = str(told)
     lying = {
         "half-written case folder": list(place.folder.glob("out/*/.partial-*")),
-        "temporary folder": [name for name in place.leftovers() if name.startswith("sgcad-scratch-")],
+        "temporary folder": [name for name in place.leftovers() if name.startswith("sgcad-temp-")],
     }
     return [f"doctor does not name a {what}" for what, there in lying.items() if there and what not in said]
 

@@ -20,10 +20,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from research.benchmarks.scenes.foreign_judge import LIMIT_M, Apart, apart, judged
-from sgcad_core.errors import SgcadError, Unsupported
+from sgcad_core.errors import BadInput, SgcadError, Unsupported
 from sgcad_core.formats.openscenario.playing.player import Played
 from sgcad_core.formats.openscenario.reading.catalogs import read_text
-from sgcad_core.formats.openscenario.reading.files import Variation, play_file, scenario_files, variations
+from sgcad_core.formats.openscenario.reading.files import Variation, play_file, variations
 
 SETS = 5
 STEP_S = 0.01
@@ -47,6 +47,13 @@ class Tried:
     def controlled(self) -> bool:
         """Whether a controller would drive something."""
         return any(note.startswith(CONTROLLERS) for note in self.notes)
+
+
+def scenario_files(folder: Path) -> list[Path]:
+    """Scenario and distribution files of a folder and below, without catalogs. Raises BadInput."""
+    if not folder.is_dir():
+        raise BadInput(f"{folder}: no such folder")
+    return [f for f in sorted(folder.rglob("*.xosc")) if "<Catalog " not in read_text(f)]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

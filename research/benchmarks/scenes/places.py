@@ -18,10 +18,10 @@ from typing import NamedTuple
 from plugins.validator.sumo_load import SumoLoad
 from plugins.validator.topology import Topology
 from research.benchmarks.scenes.random_places import KINDS, Place, random_place
+from research.benchmarks.scenes.reimport import differences
 from sgcad_core.case.records import CrashReport, Evidence, RoadNetwork
 from sgcad_core.formats.agreement import network_disagreements
 from sgcad_core.formats.opendrive.checks.check_file import xodr_findings
-from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import BESIDE, plain_xml

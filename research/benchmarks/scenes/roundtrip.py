@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import get_args
 
 from research.benchmarks.scenes.random_roads import random_networks
-from sgcad_core.formats.round_trip import ASPECTS, Difference, Reader, differences
+from research.benchmarks.scenes.reimport import ASPECTS, Difference, Reader, differences
 
 READERS: tuple[Reader, ...] = get_args(Reader)
 Lost = Mapping[Reader, Sequence[Difference]]

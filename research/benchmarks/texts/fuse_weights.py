@@ -27,7 +27,7 @@ from research.benchmarks.texts import answer_cache
 from research.rows.coded_incidents import Incident
 from research.rows.coded_rows import WAYS, allowed, incidents_of_part
 from research.training.weight_fit import calibration_error, logistic, versus
-from sgcad_core.asking.second_opinion import seconded
+from sgcad_core.asking.second_opinion import with_gist_opinion
 from sgcad_core.case.records import CrashReport
 from sgcad_core.config import Config
 from sgcad_core.config import load as load_config
@@ -57,7 +57,7 @@ def ask_all(pool: Path, part: str, config: Config, out: Path, most: int | None =
 
     def heard(incident: Incident) -> dict[str, Any]:
         report = CrashReport(case=incident.id, narrative=incident.text)
-        opinion = seconded(report, config.second_opinion, ask).opinion
+        opinion = with_gist_opinion(report, config.second_opinion, ask).opinion
         return {key: one.model_dump() for key, one in opinion.heard.items()} if opinion else {}
 
     known = answer_cache.answers(incidents, heard, "heard", out, AT_ONCE)

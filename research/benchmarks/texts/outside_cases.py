@@ -19,7 +19,7 @@ from research.generator.report import Report
 from research.generator.writer_texts import Written, report_of
 from research.renderer.draw import draw_report
 from research.rows.coded_incidents import by_hash
-from sgcad_core.asking.second_opinion import whole
+from sgcad_core.asking.second_opinion import with_model_opinion
 from sgcad_core.case.records import CrashReport, Diagram
 from sgcad_core.config import load as load_config
 from sgcad_core.reading.reading import Reading, read
@@ -105,7 +105,7 @@ def asked(
     ask = ask_of(load_config(config, tuple(overrides)))
 
     def answer(one: Written) -> Any:
-        opinion = whole(evidence_of(one), ask).opinion
+        opinion = with_model_opinion(evidence_of(one), ask).opinion
         return opinion.answered.model_dump(mode="json") if opinion and opinion.answered else None
 
     known = answer_cache.answers({one.id: one for one in texts}, answer, "answered", file, AT_ONCE)

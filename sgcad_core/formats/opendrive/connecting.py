@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sgcad_core.formats.opendrive.geometry import Pose, cubic_lengths, hermite, wrap
-from sgcad_core.formats.opendrive.streets import Street, Strip
+from sgcad_core.formats.opendrive.streets import RoadLane, Street
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 from sgcad_core.roads.lane_graph import Connection
 
@@ -27,7 +27,7 @@ _BASIS = np.column_stack(((1 + 2 * _P) * (1 - _P) ** 2, _P * (1 - _P) ** 2, _P**
 """Hermite basis: first point, first tangent, last point, last tangent."""
 
 
-class Way(NamedTuple):
+class ConnectingCurve(NamedTuple):
     """A connecting road's geometry: a cubic from `start` (aU bU cU dU aV bV cV dV, normalized), None: straight."""
 
     start: Pose
@@ -43,9 +43,9 @@ class Connector(NamedTuple):
     connection: Connection
     came: Street
     goes: Street
-    incoming: Strip
-    outgoing: Strip
-    way: Way
+    incoming: RoadLane
+    outgoing: RoadLane
+    way: ConnectingCurve
 
     @property
     def widths(self) -> tuple[float, float]:
@@ -57,15 +57,15 @@ class Connector(NamedTuple):
         )
 
 
-def way(start: Pose, end: Pose, via: Floats) -> Way:
+def connecting_curve(start: Pose, end: Pose, via: Floats) -> ConnectingCurve:
     """The way from pose to pose that lies nearest to (n, 2) points of SUMO's internal lane."""
     distance = math.dist(start[:2], end[:2])
     aside = _aside(start, end)
     if abs(wrap(end.heading_rad - start.heading_rad)) < STRAIGHT_RAD and abs(aside) < STRAIGHT_M and distance > 0:
-        return Way(start, None, distance)
+        return ConnectingCurve(start, None, distance)
     tangents = _tangents(start, end, via)
-    cubic = hermite(start, end) if tangents is None else _local(start, end, tangents)
-    return Way(start, cubic, float(cubic_lengths(np.array([cubic]), np.ones(1))[0]))
+    cubic = hermite(start, end, tangents)
+    return ConnectingCurve(start, cubic, float(cubic_lengths(np.array([cubic]), np.ones(1))[0]))
 
 
 def _aside(start: Pose, end: Pose) -> float:
@@ -103,13 +103,3 @@ def _inner(via: Floats, first: Floats, last: Floats) -> Floats:
     """Points between the ends; SUMO's own ends too where its lanes end elsewhere than the roads."""
     away = [float(np.hypot(*(via[i] - end))) > SAME_END_M for i, end in ((0, first), (-1, last))]
     return via[0 if away[0] else 1 : len(via) if away[1] else -1]
-
-
-def _local(start: Pose, end: Pose, reach: tuple[float, float]) -> tuple[float, ...]:
-    """Coefficients in the frame of the start pose."""
-    dx, dy = end.x_m - start.x_m, end.y_m - start.y_m
-    c, s = math.cos(start.heading_rad), math.sin(start.heading_rad)
-    u, v = dx * c + dy * s, dy * c - dx * s
-    turn = end.heading_rad - start.heading_rad
-    u1, v1 = reach[1] * math.cos(turn), reach[1] * math.sin(turn)
-    return 0.0, reach[0], 3 * u - 2 * reach[0] - u1, u1 + reach[0] - 2 * u, 0.0, 0.0, 3 * v - v1, v1 - 2 * v

@@ -1,4 +1,4 @@
-"""What netconvert passes over in an OpenDRIVE file, in SUMO's terms: signs, center lanes, lanes that merge.
+"""Parts of an OpenDRIVE file that netconvert ignores, in SUMO's terms: signs, center lanes, merging lanes.
 
 An approach is named as netconvert names edges: road "7" gives "-7" along s and "7" against it. Junctions keep
 their ids. Reads the codes that this project writes (US R1-1, R1-2) and Germany's (206, 205), which many
@@ -56,7 +56,7 @@ def _junction(told: Mapping[str, str], approaches: frozenset[str]) -> SignedJunc
 
 
 def _signs(root: Element) -> dict[str, str]:
-    """What stands where an approach ends: "stop", "yield", "head" (which outdoes signs)."""
+    """The control at the end of each approach: "stop", "yield" or "head" (a signal head outranks signs)."""
     found: dict[str, str] = {}
     for road in root.iterfind("road"):
         for signal in road.iterfind("signals/signal"):
@@ -102,22 +102,6 @@ def imported_lanes(root: Element) -> dict[str, list[Element]]:
                 lanes.sort(key=lambda lane: -abs(number(lane, "id")))
                 found[f"{mark}{road.get('id')}"] = lanes
     return found
-
-
-def center_lanes(root: Element) -> dict[str, int]:
-    """Edge -> how many of its lanes are two-way left-turn lanes, which netconvert opens to through cars."""
-    counts = {
-        edge: sum(lane.get("type") == "bidirectional" for lane in lanes) for edge, lanes in imported_lanes(root).items()
-    }
-    return {edge: count for edge, count in counts.items() if count}
-
-
-def parking_lanes(root: Element) -> dict[str, int]:
-    """Edge -> how many of its lanes are parking lanes, which netconvert opens to cars that drive."""
-    counts = {
-        edge: sum(lane.get("type") == "parking" for lane in lanes) for edge, lanes in imported_lanes(root).items()
-    }
-    return {edge: count for edge, count in counts.items() if count}
 
 
 def width_of(lane: Element) -> float | None:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 
 from sgcad_core.formats.opendrive.areas import STALL_WIDTH_M, Cone, Crosswalk, Stall
-from sgcad_core.formats.opendrive.elements import add, number
+from sgcad_core.formats.opendrive.elements import add_child, decimal_text
 from sgcad_core.formats.opendrive.signals import STOP_LINE_M, Signal, StopLine
 from sgcad_core.formats.xml import Element
 from sgcad_core.roads.closures import CONE_M
@@ -27,14 +27,16 @@ def add_objects(
     """Stop lines, crosswalks, parking spaces, cones and gores; no <objects> where there are none."""
     if not (stop_lines or crosswalks or stalls or cones or gores):
         return
-    objects = add(road, "objects")
+    objects = add_child(road, "objects")
     for line in stop_lines:
-        made = add(objects, "object", id=line.id, type="roadMark", subtype=STOP_LINE, name="stop line", dynamic="no")
+        made = add_child(
+            objects, "object", id=line.id, type="roadMark", subtype=STOP_LINE, name="stop line", dynamic="no"
+        )
         made.set("orientation", _orientation(line.side))
         _place(made, line.s_m, line.t_m, 0.0)
-        made.set("hdg", number(0.0 if line.side == "right" else math.pi))
+        made.set("hdg", decimal_text(0.0 if line.side == "right" else math.pi))
         for name, value in (("length", STOP_LINE_M), ("width", line.width_m), ("height", 0.0)):
-            made.set(name, number(value))
+            made.set(name, decimal_text(value))
         _validity(made, line.lanes)
 
     for walk in crosswalks:
@@ -42,18 +44,20 @@ def add_objects(
     for gore in gores:
         _add_area(objects, gore, ("roadMark", "gore", "gore"))
     for stall in stalls:
-        made = add(objects, "object", id=stall.id, type="parkingSpace", name="stall", dynamic="no", orientation="none")
+        made = add_child(
+            objects, "object", id=stall.id, type="parkingSpace", name="stall", dynamic="no", orientation="none"
+        )
         _place(made, stall.s_m, stall.t_m, 0.0)
         sizes = ("hdg", stall.hdg_rad), ("length", stall.length_m), ("width", STALL_WIDTH_M), ("height", 0.0)
         for name, value in sizes:
-            made.set(name, number(value))
-        add(made, "parkingSpace", access="all")
+            made.set(name, decimal_text(value))
+        add_child(made, "parkingSpace", access="all")
     for cone in cones:
-        made = add(objects, "object", id=cone.id, type="obstacle", subtype="cone", name="cone", dynamic="no")
+        made = add_child(objects, "object", id=cone.id, type="obstacle", subtype="cone", name="cone", dynamic="no")
         made.set("orientation", "none")
         _place(made, cone.s_m, cone.t_m, 0.0)
         for name, value in (("hdg", 0.0), ("radius", CONE_M / 2), ("height", CONE_HEIGHT_M)):
-            made.set(name, number(value))
+            made.set(name, decimal_text(value))
 
 
 def _add_area(objects: Element, walk: Crosswalk, called: tuple[str, str, str]) -> None:
@@ -62,24 +66,24 @@ def _add_area(objects: Element, walk: Crosswalk, called: tuple[str, str, str]) -
     A crosswalk lies beyond the street's end, in the junction.
     """
     kind, subtype, name = called
-    made = add(objects, "object", id=walk.id, type=kind, subtype=subtype, name=name, dynamic="no")
+    made = add_child(objects, "object", id=walk.id, type=kind, subtype=subtype, name=name, dynamic="no")
     made.set("orientation", "none")
     _place(made, walk.s_m, 0.0, 0.0)
     (low_u, low_v), (high_u, high_v) = walk.corners.min(axis=0), walk.corners.max(axis=0)
     for key, value in (("hdg", 0.0), ("length", high_u - low_u), ("width", high_v - low_v), ("height", 0.0)):
-        made.set(key, number(value))
-    outline = add(add(made, "outlines"), "outline", id="0", closed="true", outer="true")
+        made.set(key, decimal_text(value))
+    outline = add_child(add_child(made, "outlines"), "outline", id="0", closed="true", outer="true")
     for i, (u, v) in enumerate(walk.corners):
-        add(outline, "cornerLocal", id=str(i), u=number(u), v=number(v), z="0", height="0")
+        add_child(outline, "cornerLocal", id=str(i), u=decimal_text(u), v=decimal_text(v), z="0", height="0")
 
 
 def add_signals(road: Element, signals: Sequence[Signal]) -> None:
     """Signs and signal heads; no <signals> where there are none."""
     if not signals:
         return
-    parent = add(road, "signals")
+    parent = add_child(road, "signals")
     for signal in signals:
-        made = add(parent, "signal", id=signal.id, name=signal.name, dynamic="yes" if signal.dynamic else "no")
+        made = add_child(parent, "signal", id=signal.id, name=signal.name, dynamic="yes" if signal.dynamic else "no")
         made.set("orientation", _orientation(signal.side))
         _place(made, signal.s_m, signal.t_m, signal.z_m)
         for name, text in (("country", signal.country), ("type", signal.type), ("subtype", "-1")):
@@ -91,9 +95,9 @@ def add_signals(road: Element, signals: Sequence[Signal]) -> None:
             made.set("unit", "mph")
         _validity(made, signal.lanes)
         if signal.main:
-            add(made, "reference", elementType="signal", elementId=signal.main, type="supplements")
+            add_child(made, "reference", elementType="signal", elementId=signal.main, type="supplements")
         if signal.stop_line:
-            add(made, "reference", elementType="object", elementId=signal.stop_line, type=STOP_LINE)
+            add_child(made, "reference", elementType="object", elementId=signal.stop_line, type=STOP_LINE)
 
 
 def _orientation(side: str) -> str:
@@ -102,7 +106,7 @@ def _orientation(side: str) -> str:
 
 def _place(element: Element, s_m: float, t_m: float, z_m: float) -> None:
     for name, value in (("s", s_m), ("t", t_m), ("zOffset", z_m)):
-        element.set(name, number(value))
+        element.set(name, decimal_text(value))
 
 
 def _validity(element: Element, lanes: Iterable[int]) -> None:
@@ -114,4 +118,4 @@ def _validity(element: Element, lanes: Iterable[int]) -> None:
         else:
             runs.append([lane])
     for run in runs:
-        add(element, "validity", fromLane=str(run[0]), toLane=str(run[-1]))
+        add_child(element, "validity", fromLane=str(run[0]), toLane=str(run[-1]))

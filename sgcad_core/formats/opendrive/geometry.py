@@ -89,20 +89,23 @@ def cubic_lengths(table: Floats, p_end: Floats) -> Floats:
     return lengths
 
 
-def hermite(start: Pose, end: Pose) -> tuple[float, ...]:
+def hermite(start: Pose, end: Pose, tangents_m: tuple[float, float] | None = None) -> tuple[float, ...]:
     """aU bU cU dU aV bV cV dV (normalized) of the cubic from pose to pose, in the frame of the start pose.
 
-    Tangents are those of a circular arc with the same turn (the distance of the ends on a straight way), at
-    least 0.1 m: a bend around one point needs some length for its headings to be told.
+    Without given lengths the tangents are those of a circular arc with the same turn (the distance of the ends on a
+    straight way), at least 0.1 m: a bend around one point needs some length to have headings.
     """
     dx, dy = end.x_m - start.x_m, end.y_m - start.y_m
     c, s = math.cos(start.heading_rad), math.sin(start.heading_rad)
     u, v = dx * c + dy * s, dy * c - dx * s
-    turn = wrap(end.heading_rad - start.heading_rad)
-    half = min(abs(turn), 3.0) / 2
-    reach = max(math.hypot(u, v) * (2 * math.tan(half / 2) / math.sin(half) if half > 1e-6 else 1.0), 0.1)
-    u1, v1 = reach * math.cos(turn), reach * math.sin(turn)
-    return 0.0, reach, 3 * u - 2 * reach - u1, u1 + reach - 2 * u, 0.0, 0.0, 3 * v - v1, v1 - 2 * v
+    turn = end.heading_rad - start.heading_rad
+    if tangents_m is None:
+        half = min(abs(wrap(turn)), 3.0) / 2
+        reach = max(math.hypot(u, v) * (2 * math.tan(half / 2) / math.sin(half) if half > 1e-6 else 1.0), 0.1)
+        tangents_m = reach, reach
+    first, last = tangents_m
+    u1, v1 = last * math.cos(turn), last * math.sin(turn)
+    return 0.0, first, 3 * u - 2 * first - u1, u1 + first - 2 * u, 0.0, 0.0, 3 * v - v1, v1 - 2 * v
 
 
 def wrap(angle_rad: float) -> float:

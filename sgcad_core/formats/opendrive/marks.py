@@ -1,10 +1,10 @@
-"""Lane markings: what is told of them, else what U.S. roads carry (MUTCD 2009, part 3B). Knows no XML."""
+"""Lane markings: as stated, else those of U.S. roads (MUTCD 2009, part 3B). Knows no XML."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from sgcad_core.formats.opendrive.streets import Street, Strip
+from sgcad_core.formats.opendrive.streets import RoadLane, Street
 from sgcad_core.formats.sumo.parameters import CENTER_LINE, KIND, MEDIAN
 from sgcad_core.kinds import UNPAINTED
 
@@ -50,7 +50,7 @@ def center_mark(street: Street) -> Mark:
     return TOLD.get(street.forward.parameters.get(CENTER_LINE, ""), DOUBLE)
 
 
-def outer_mark(street: Street, strip: Strip) -> Mark:
+def outer_mark(street: Street, strip: RoadLane) -> Mark:
     """The marking along a lane's outer border."""
     if _unmarked(street) or strip.type in ("shoulder", "sidewalk", "curb", "border", "parking"):
         return NONE

@@ -1,7 +1,7 @@
 """Traffic control of a map: signs, signal heads with their programs, stop lines. Records only, no XML.
 
-What stands where follows from the lane graph alone: link states tell who stops (s, w), programs what signals
-show, parameters of edges and nodes what a report tells beyond SUMO's terms (`plain_xml`). Codes: MUTCD 2009
+Everything follows from the lane graph: link states give the approaches that stop (s, w), programs what signals
+show, parameters of edges and nodes what SUMO has no term for (`plain_xml`). Codes: MUTCD 2009
 (R1-1 stop, R1-2 yield, R1-3P all way, R2-1 speed limit) with country "US"; signal heads
 1000001 of OpenDRIVE's own list. Metres; seconds.
 """
@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 from itertools import count
 from typing import NamedTuple
 
-from sgcad_core.formats.opendrive.streets import Side, Street, Strip, streets
-from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.formats.opendrive.streets import RoadLane, Side, Street
 from sgcad_core.formats.sumo.parameters import CONTROL, LIMIT, POSTED
 from sgcad_core.roads.lane_graph import Connection, Edge, LaneGraph
 
@@ -102,15 +101,6 @@ class _Approach(NamedTuple):
     links: tuple[Connection, ...]
 
 
-def signal_controllers(net_xml: str) -> tuple[Controller, ...]:
-    """Controllers and phases of a network as its .xodr names them, for a scenario's <TrafficSignals>.
-
-    Empty where no signal stands. Raises InvalidOutput where it is no network.
-    """
-    graph = parse_net(net_xml)
-    return control_of(graph, streets(graph)).controllers if graph.programs else ()
-
-
 def control_of(graph: LaneGraph, roads: Sequence[Street]) -> Control:
     """Signs, heads, stop lines and controllers of a map, ids counted through the file."""
     ids, lines = (map(str, count(1)), map(str, count(1)))
@@ -176,7 +166,7 @@ def _curb_t(street: Street, side: Side, s_m: float) -> float:
     return t + (BESIDE_M if side == "left" else -BESIDE_M)
 
 
-def _driven(street: Street, side: Side) -> list[Strip]:
+def _driven(street: Street, side: Side) -> list[RoadLane]:
     return [strip for strip in street.strips(side) if strip.type == "driving"]
 
 

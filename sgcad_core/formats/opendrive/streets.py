@@ -36,7 +36,7 @@ BESIDE_SHARE = 0.3
 
 
 @dataclass(frozen=True)
-class Strip:
+class RoadLane:
     """A lane of a road: its id, OpenDRIVE type, widths, and the SUMO lane that it is (None: a median)."""
 
     id: int
@@ -58,8 +58,8 @@ class Street:
     forward: Edge
     backward: Edge | None
     line: tuple[Piece, ...]
-    right: tuple[Strip, ...]
-    left: tuple[Strip, ...] = ()
+    right: tuple[RoadLane, ...]
+    left: tuple[RoadLane, ...] = ()
 
     @cached_property
     def length_m(self) -> float:
@@ -76,7 +76,7 @@ class Street:
         """Forward, then backward where there is one."""
         return (self.forward, self.backward) if self.backward else (self.forward,)
 
-    def strips(self, side: Side) -> tuple[Strip, ...]:
+    def strips(self, side: Side) -> tuple[RoadLane, ...]:
         """Lanes of a side from the reference line outwards."""
         return self.right if side == "right" else self.left
 
@@ -84,11 +84,11 @@ class Street:
         """The side on which an edge's lanes lie."""
         return "right" if edge == self.forward.id else "left"
 
-    def strip_of(self, edge: str, index: int) -> Strip:
+    def strip_of(self, edge: str, index: int) -> RoadLane:
         """The lane that is a SUMO lane."""
         return next(s for s in self.strips(self.side_of(edge)) if s.lane is not None and s.lane.index == index)
 
-    def border_t(self, strip: Strip, s_m: float, inner: bool = False) -> float:
+    def border_t(self, strip: RoadLane, s_m: float, inner: bool = False) -> float:
         """t of a lane's outer (or inner) border at s; left positive."""
         side: Side = "right" if strip.id < 0 else "left"
         reach = sum(s.width_at(s_m) for s in self.strips(side) if abs(s.id) < abs(strip.id) + (not inner))
@@ -229,7 +229,9 @@ def _along(line: Floats, point: Floats) -> float:
 
 
 # ------------------------------------------------------------------ lanes
-def _strips(edge: Edge, sign: int, line: Floats, border: Floats, varies: bool, center_lane: bool) -> tuple[Strip, ...]:
+def _strips(
+    edge: Edge, sign: int, line: Floats, border: Floats, varies: bool, center_lane: bool
+) -> tuple[RoadLane, ...]:
     """Lanes of one side from the inside out, a median strip first where the border lies off the line."""
     lanes = list(reversed(edge.lanes))
     stations = stations_of(line)
@@ -248,7 +250,7 @@ def _strips(edge: Edge, sign: int, line: Floats, border: Floats, varies: bool, c
             rows.append(("curb", None, (Width(0.0, CURB_M),)))
             wide_m = tuple(replace(w, a=w.a - CURB_M) for w in wide_m)
         rows.append((kind, lane, wide_m))
-    return tuple(Strip(sign * i, kind, w, lane) for i, (kind, lane, w) in enumerate(rows, 1))
+    return tuple(RoadLane(sign * i, kind, w, lane) for i, (kind, lane, w) in enumerate(rows, 1))
 
 
 def _lane_type(lane: Lane, edge: Edge, two_way: bool) -> str:

@@ -14,14 +14,14 @@ from lxml import etree
 from sgcad_core.case.records import Finding
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.opendrive.areas import cones_of, crosswalks_of, gores_of, stalls_of
-from sgcad_core.formats.opendrive.connecting import Connector, way
+from sgcad_core.formats.opendrive.connecting import Connector, connecting_curve
 from sgcad_core.formats.opendrive.elements import (
-    add,
+    add_child,
     add_connector_lanes,
     add_cubic,
     add_pieces,
     add_street_lanes,
-    number,
+    decimal_text,
 )
 from sgcad_core.formats.opendrive.furniture import add_objects, add_signals
 from sgcad_core.formats.opendrive.signals import control_of, posted_mph
@@ -36,10 +36,10 @@ TOUCHING_M = 0.05
 TRIM_M = 0.1
 """Lanes of a node that touch leave a connecting road no length: its roads are cut back by so much."""
 FRAME = "+proj=tmerc +lat_0=0 +lon_0=0 +k=1 +x_0=0 +y_0=0 +ellps=WGS84 +units=m"
-"""A metric plane, x east and y north. Its place on the globe is nobody's: reports name no coordinates."""
+"""A metric plane, x east and y north, without a place on the globe: reports name no coordinates."""
 ROAD_TYPES = {"rural": "rural", "town": "town", "motorway": "motorway", DRIVEWAY: "townPrivate",
               ALLEY: "townLocal"}  # fmt: skip
-"""By the area that is told, else the kind of road."""
+"""By the stated area, else by the kind of road."""
 
 
 def write_xodr(net_xml: str) -> str:
@@ -48,8 +48,7 @@ def write_xodr(net_xml: str) -> str:
     roads = streets(graph, _trims(graph))
     if not roads:
         what, remedy = "the network has no road that can be drawn", "give it an edge of 1 m or more"
-        finding = Finding(source="xodr", what=what, value=f"{len(graph.edges)} edges", remedy=remedy)
-        raise InvalidOutput(finding.line(), [finding])
+        raise InvalidOutput.of(Finding(source="xodr", what=what, value=f"{len(graph.edges)} edges", remedy=remedy))
     return to_text(_Document(graph, roads).root())
 
 
@@ -86,7 +85,7 @@ class _Document:
         end = goes.lane_pose(link.to_edge, link.to_lane, at_end=False)
         lanes = came.strip_of(link.from_edge, link.from_lane), goes.strip_of(link.to_edge, link.to_lane)
         junction = self.junctions[self.graph.edges[link.from_edge].to_node]
-        return Connector(name, junction, link, came, goes, *lanes, way(start, end, link.via_shape))
+        return Connector(name, junction, link, came, goes, *lanes, connecting_curve(start, end, link.via_shape))
 
     def root(self) -> Element:
         """The whole file."""
@@ -97,39 +96,41 @@ class _Document:
         for connector in self.connectors:
             self._connecting_road(root, connector)
         for controller in self.control.controllers:
-            made = add(root, "controller", id=controller.id, name=controller.name, sequence="0")
+            made = add_child(root, "controller", id=controller.id, name=controller.name, sequence="0")
             for signal in controller.signals:
-                add(made, "control", signalId=signal, type="0")
+                add_child(made, "control", signalId=signal, type="0")
         for node, name in self.junctions.items():
             self._junction(root, node, name)
         for i, circle in enumerate(self.graph.circles, 1):
-            group = add(root, "junctionGroup", id=str(i), name=min(circle), type="roundabout")
+            group = add_child(root, "junctionGroup", id=str(i), name=min(circle), type="roundabout")
             for node, name in self.junctions.items():
                 if node in circle:
-                    add(group, "junctionReference", junction=name)
+                    add_child(group, "junctionReference", junction=name)
         return root
 
     def _header(self, root: Element) -> None:
         points = np.vstack([lane.shape for edge in self.graph.edges.values() for lane in edge.lanes])
         margin = max(lane.width_m for edge in self.graph.edges.values() for lane in edge.lanes) / 2
         (west, south), (east, north) = points.min(axis=0) - margin, points.max(axis=0) + margin
-        header = add(root, "header", revMajor="1", revMinor="7", name="", version="1.00", vendor="sgcad")
+        header = add_child(root, "header", revMajor="1", revMinor="7", name="", version="1.00", vendor="sgcad")
         for side, value in (("north", north), ("south", south), ("east", east), ("west", west)):
-            header.set(side, number(value))
-        add(header, "geoReference").text = etree.CDATA(FRAME)
+            header.set(side, decimal_text(value))
+        add_child(header, "geoReference").text = etree.CDATA(FRAME)
 
     # -------------------------------------------------------------- roads
     def _street(self, root: Element, street: Street) -> None:
-        road = add(root, "road", name=street.name, length=number(street.length_m), id=street.id, junction="-1")
+        road = add_child(
+            root, "road", name=street.name, length=decimal_text(street.length_m), id=street.id, junction="-1"
+        )
         road.set("rule", "RHT")
-        link = add(road, "link")
+        link = add_child(road, "link")
         ends = ("predecessor", street.forward.from_node), ("successor", street.forward.to_node)
         for side, node in ends:
             if node in self.junctions:
-                add(link, side, elementType="junction", elementId=self.junctions[node])
+                add_child(link, side, elementType="junction", elementId=self.junctions[node])
         self._type(road, street)
-        add_pieces(add(road, "planView"), street.line)
-        add_street_lanes(add(road, "lanes"), street)
+        add_pieces(add_child(road, "planView"), street.line)
+        add_street_lanes(add_child(road, "lanes"), street)
         lines = [line for line in self.control.stop_lines if line.road == street.id]
         walks = [walk for walk in self.crosswalks if walk.road == street.id]
         gores = [gore for gore in self.gores if gore.road == street.id]
@@ -139,31 +140,33 @@ class _Document:
     def _type(self, road: Element, street: Street) -> None:
         told = street.forward.parameters
         kind = ROAD_TYPES.get(told.get(AREA, ""), ROAD_TYPES.get(told.get(KIND, ""), "unknown"))
-        made = add(road, "type", s="0", type=kind)
+        made = add_child(road, "type", s="0", type=kind)
         if (limit := posted_mph(street.forward)) is not None:
-            add(made, "speed", max=f"{limit:g}", unit="mph")
+            add_child(made, "speed", max=f"{limit:g}", unit="mph")
 
     def _connecting_road(self, root: Element, connector: Connector) -> None:
         length, link = connector.way.length_m, connector.connection
-        road = add(root, "road", name="", length=number(length), id=connector.id, junction=connector.junction)
+        road = add_child(
+            root, "road", name="", length=decimal_text(length), id=connector.id, junction=connector.junction
+        )
         road.set("rule", "RHT")
-        links = add(road, "link")
+        links = add_child(road, "link")
         for side, street, edge, at_end in (
             ("predecessor", connector.came, link.from_edge, True), ("successor", connector.goes, link.to_edge, False),
         ):  # fmt: skip
             contact = "end" if street.driven_end(edge, at_end) > 0 else "start"
-            add(links, side, elementType="road", elementId=street.id, contactPoint=contact)
-        add_cubic(add(road, "planView"), connector.way)
-        add_connector_lanes(add(road, "lanes"), connector)
+            add_child(links, side, elementType="road", elementId=street.id, contactPoint=contact)
+        add_cubic(add_child(road, "planView"), connector.way)
+        add_connector_lanes(add_child(road, "lanes"), connector)
 
     # -------------------------------------------------------------- junctions
     def _junction(self, root: Element, node: str, name: str) -> None:
-        junction = add(root, "junction", id=name, name=node)
+        junction = add_child(root, "junction", id=name, name=node)
         here = [c for c in self.connectors if c.junction == name]
         for i, connector in enumerate(here):
-            made = add(junction, "connection", id=str(i), incomingRoad=connector.came.id)
+            made = add_child(junction, "connection", id=str(i), incomingRoad=connector.came.id)
             made.set("connectingRoad", connector.id)
             made.set("contactPoint", "start")
-            add(made, "laneLink", attributes={"from": str(connector.incoming.id), "to": "-1"})
+            add_child(made, "laneLink", attributes={"from": str(connector.incoming.id), "to": "-1"})
         for i, controller in enumerate(c for c in self.control.controllers if c.junction == node):
-            add(junction, "controller", id=controller.id, type="0", sequence=str(i))
+            add_child(junction, "controller", id=controller.id, type="0", sequence=str(i))

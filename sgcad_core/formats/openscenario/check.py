@@ -1,4 +1,4 @@
-"""What is wrong with an OpenSCENARIO file: schema, references, places, boxes, times, and whether it plays.
+"""Checks of an OpenSCENARIO file: schema, references, places, boxes, times, and whether it plays.
 
 Players accept much of this in silence (a missing lane, an s beyond the road), so it is said here. Schemas 1.0
 to 1.3 come with scenariogeneration. Knows the .xodr through its index of roads and lanes.
@@ -8,24 +8,22 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from functools import cache
-from importlib.metadata import PackageNotFoundError, distribution
 from itertools import islice
 
 import numpy as np
 from lxml import etree
 
 from sgcad_core.case.records import Finding
-from sgcad_core.errors import InvalidOutput, MissingTool
-from sgcad_core.findings import Finder
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.opendrive.checks.road_index import RoadIndex, lane_index
 from sgcad_core.formats.opendrive.geometry import end_pose, geometries, start_pose
 from sgcad_core.formats.openscenario.playing.player import play
-from sgcad_core.formats.openscenario.reading.elements import SOURCE, Node, read_root
-from sgcad_core.formats.xml import parse_xml, schema_errors
+from sgcad_core.formats.openscenario.reading.elements import SOURCE, XmlNode, read_root
+from sgcad_core.formats.xml import asam_schema, parse_xml, schema_errors
 from sgcad_core.geometry.plane import Floats
 
-_finding = Finder(SOURCE)
+_finding = FindingFactory(SOURCE)
 
 MARGIN_M = 150.0
 """Farther than this outside the network's bounding box nothing can have to do with the crash."""
@@ -46,7 +44,10 @@ def xosc_findings(xosc: str, xodr: str | None, road_file: str = "road.xodr") -> 
     """
     try:
         root = read_root(xosc)
-        broken = [_schema_finding(line, message) for line, message in schema_errors(_schema_of(root), root.element)]
+        broken = [
+            _finding(message, f"line {line}", remedy="follow the OpenSCENARIO schema")
+            for line, message in schema_errors(_schema_of(root), root.element)
+        ]
         found = broken or list(islice(_content(root, xodr, road_file), MAX_FINDINGS))
         if not found:
             play(xosc, xodr)
@@ -55,7 +56,7 @@ def xosc_findings(xosc: str, xodr: str | None, road_file: str = "road.xodr") -> 
     return found[:MAX_FINDINGS]
 
 
-def _content(root: Node, xodr: str | None, road_file: str) -> Iterator[Finding]:
+def _content(root: XmlNode, xodr: str | None, road_file: str) -> Iterator[Finding]:
     yield from _blamed(_entities, root)
     yield from _blamed(_entity_references, root)
     yield from _blamed(_doubles, root)
@@ -67,7 +68,7 @@ def _content(root: Node, xodr: str | None, road_file: str) -> Iterator[Finding]:
         yield from _blamed(lambda r: _world_places(r, extent), root)
 
 
-def _blamed(check: Callable[[Node], Iterator[Finding]], root: Node) -> Iterator[Finding]:
+def _blamed(check: Callable[[XmlNode], Iterator[Finding]], root: XmlNode) -> Iterator[Finding]:
     """A check's findings, and the fault that ended it."""
     try:
         yield from check(root)
@@ -76,30 +77,16 @@ def _blamed(check: Callable[[Node], Iterator[Finding]], root: Node) -> Iterator[
 
 
 # ------------------------------------------------------------------ schema
-def _schema_of(root: Node) -> etree.XMLSchema:
+def _schema_of(root: XmlNode) -> etree.XMLSchema:
     header = root.need("FileHeader")
     minor = header.text("revMinor")
     if header.text("revMajor") != "1" or minor not in _SCHEMAS:
         raise header.fault("unknown OpenSCENARIO version", f"{header.text('revMajor')}.{minor}", "write revMinor 2")
-    return _schema(_SCHEMAS[minor])
-
-
-@cache
-def _schema(version: str) -> etree.XMLSchema:
-    try:
-        file = distribution("scenariogeneration").locate_file(f"schemas/OpenSCENARIO_{version}.xsd")
-    except PackageNotFoundError as fault:
-        message = "the OpenSCENARIO schemas come with scenariogeneration: `pip install scenariogeneration`"
-        raise MissingTool(message) from fault
-    return etree.XMLSchema(etree.parse(str(file), etree.XMLParser(no_network=True)))
-
-
-def _schema_finding(line: int, message: str) -> Finding:
-    return _finding(message, f"line {line}", remedy="follow the OpenSCENARIO schema")
+    return asam_schema(f"OpenSCENARIO_{_SCHEMAS[minor]}")
 
 
 # ------------------------------------------------------------------ entities
-def _entities(root: Node) -> Iterator[Finding]:
+def _entities(root: XmlNode) -> Iterator[Finding]:
     objects = root.need("Entities").children("ScenarioObject")
     for name, count in Counter(o.text("name") for o in objects).items():
         if count > 1:
@@ -116,26 +103,26 @@ def _entities(root: Node) -> Iterator[Finding]:
             yield _finding(what, _place(axle), f"{x:g}", remedy)
 
 
-def _entity_references(root: Node) -> Iterator[Finding]:
+def _entity_references(root: XmlNode) -> Iterator[Finding]:
     known = {o.text("name") for o in root.need("Entities").children("ScenarioObject", "EntitySelection")}
     for element in root.element.iterfind(".//*[@entityRef]"):
-        node = Node(element, root.scope)
+        node = XmlNode(element, root.scope)
         if not _local(node) and (name := node.text("entityRef")) not in known:
             yield _finding("no such entity", _place(node), name, f"one of {', '.join(sorted(known))}")
 
 
-def _doubles(root: Node) -> Iterator[Finding]:
+def _doubles(root: XmlNode) -> Iterator[Finding]:
     """Equal names on one level of the storyboard."""
     for tag in _NAMED:
         names = Counter((e.getparent(), e.get("name")) for e in root.element.iterfind(f"Storyboard//{tag}"))
         for (parent, name), count in names.items():
             if count > 1:
-                where = _place(Node(parent, root.scope))
+                where = _place(XmlNode(parent, root.scope))
                 yield _finding(f"{count} <{tag}> here have one name", where, name or "", "rename them")
 
 
 # ------------------------------------------------------------------ places
-def _logic_file(root: Node, road_file: str) -> Iterator[Finding]:
+def _logic_file(root: XmlNode, road_file: str) -> Iterator[Finding]:
     logic = root.need("RoadNetwork").find("LogicFile")
     found = logic.text("filepath") if logic else ""
     if found != road_file:
@@ -143,7 +130,7 @@ def _logic_file(root: Node, road_file: str) -> Iterator[Finding]:
         yield _finding(what, "RoadNetwork/LogicFile", found, f"write {road_file!r}")
 
 
-def _lane_places(root: Node, index: RoadIndex) -> Iterator[Finding]:
+def _lane_places(root: XmlNode, index: RoadIndex) -> Iterator[Finding]:
     for node in (*_all(root, "LanePosition"), *_all(root, "RoadPosition")):
         if _local(node):
             continue
@@ -152,7 +139,7 @@ def _lane_places(root: Node, index: RoadIndex) -> Iterator[Finding]:
             yield _finding(fault, _place(node), remedy="use a road, lane and s of the .xodr")
 
 
-def _world_places(root: Node, extent: Floats) -> Iterator[Finding]:
+def _world_places(root: XmlNode, extent: Floats) -> Iterator[Finding]:
     """The first place of every trajectory and action that lies outside."""
     (x_low, y_low), (x_high, y_high) = extent[0] - MARGIN_M, extent[1] + MARGIN_M
     told = set()
@@ -166,7 +153,7 @@ def _world_places(root: Node, extent: Floats) -> Iterator[Finding]:
         owner = holder.getparent() if holder.tag == "Vertex" else holder
         if owner not in told:
             told.add(owner)
-            where = _place(Node(owner, root.scope))
+            where = _place(XmlNode(owner, root.scope))
             yield _finding("far outside the road network", where, f"x = {x:g}, y = {y:g}", _remedy(extent))
 
 
@@ -186,7 +173,7 @@ def _extent(xodr: str) -> Floats:
 
 
 # ------------------------------------------------------------------ trajectories
-def _trajectories(root: Node) -> Iterator[Finding]:
+def _trajectories(root: XmlNode) -> Iterator[Finding]:
     for line in _all(root, "Polyline"):
         vertices = line.children("Vertex")
         if any(v.element.get("time") is None or _local(v) for v in vertices):
@@ -200,7 +187,7 @@ def _trajectories(root: Node) -> Iterator[Finding]:
         yield _finding("vertex times do not rise", _place(vertices[k + 1]), f"{times[k]:g}, {times[k + 1]:g} s", remedy)
 
 
-def _jumps(line: Node, times: Floats) -> Iterator[Finding]:
+def _jumps(line: XmlNode, times: Floats) -> Iterator[Finding]:
     places = [p for p in _all(line, "WorldPosition") if not _local(p)]
     if len(places) != len(times):
         return
@@ -212,15 +199,15 @@ def _jumps(line: Node, times: Floats) -> Iterator[Finding]:
 
 
 # ------------------------------------------------------------------ shared
-def _all(node: Node, tag: str) -> Iterator[Node]:
-    return (Node(e, node.scope) for e in node.element.iterfind(f".//{tag}"))
+def _all(node: XmlNode, tag: str) -> Iterator[XmlNode]:
+    return (XmlNode(e, node.scope) for e in node.element.iterfind(f".//{tag}"))
 
 
-def _local(node: Node) -> bool:
+def _local(node: XmlNode) -> bool:
     """Whether it uses a parameter of a story, maneuver or trajectory, which only playing resolves."""
     return any("$" in v and v.lstrip("$") not in node.scope for v in node.element.attrib.values())
 
 
-def _place(node: Node) -> str:
+def _place(node: XmlNode) -> str:
     name = node.element.get("name")
     return f"<{node.tag}{f' name={name!r}' if name else ''}> in line {node.element.sourceline}"

@@ -22,7 +22,7 @@ from sgcad_core.formats.sumo.parameters import CONTROL
 from sgcad_core.formats.sumo.plain_xml import BESIDE, CENTER_LANE_CLASS
 from sgcad_core.formats.xml import Element, parse_xml, to_text
 from sgcad_core.roads.junction_words import JunctionLeg
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 TIMEOUT_S = 120.0
 MOST_EDGES = 110
@@ -37,22 +37,19 @@ _LINK = ("fromLane", "toLane")
 
 def read_map(file: Path) -> PlainXml:
     """Read a map. Raises ConfigError naming the file for one that netconvert cannot read or that is too large."""
-    nodes, edges, links = _parts(file)
+    nodes, edges, links = map_parts(file)
     found = _with_junction(list(edges.iterfind("edge")))
     if not 0 < len(found) <= MOST_EDGES:
         raise ConfigError(f"{file}: {len(found)} one-way edges, a map has 1 to {MOST_EDGES}: cut it smaller")
     return _renamed(nodes, found, links)
 
 
-def plain_of_map(file: Path) -> PlainXml:
-    """A map under netconvert's own names. Raises ConfigError naming the file for one that it cannot read."""
-    nodes, edges, links = _parts(file, ("--no-turnarounds",))
-    return PlainXml(nodes=to_text(nodes), edges=to_text(edges), connections=to_text(links))
+def map_parts(file: Path, flags: Sequence[str] = _FLAGS) -> tuple[Element, Element, Element]:
+    """Nodes, edges and connections as netconvert reads them, completed where it ignores parts of an .xodr.
 
-
-def _parts(file: Path, flags: Sequence[str] = _FLAGS) -> tuple[Element, Element, Element]:
-    """Nodes, edges and connections as netconvert reads them, completed where it passes over what an .xodr says."""
-    with scratch("map") as folder:
+    Raises ConfigError naming the file for one that cannot be read.
+    """
+    with temp_folder("map") as folder:
         parts = _converted(file, flags, folder)
     try:
         nodes, edges, links = (parse_xml(text, file.name) for text in parts)
@@ -70,7 +67,7 @@ def _converted(file: Path, flags: Sequence[str], folder: Path) -> list[str]:
 
 
 def _restore(xodr: Element, nodes: Element, edges: Element, links: Element) -> None:
-    """Signs, two-way left-turn lanes and lanes that merge of an OpenDRIVE file, which netconvert passes over."""
+    """Adds signs, two-way left-turn lanes and merging lanes of an OpenDRIVE file, which netconvert ignores."""
     known = {edge.get("id") for edge in edges.iterfind("edge")}
     there = {(c.get("from"), c.get("fromLane"), c.get("to"), c.get("toLane")) for c in links.iterfind("connection")}
     for came, lane, goes, goal in sorted(lane_links(xodr)):
@@ -91,7 +88,7 @@ def _restore(xodr: Element, nodes: Element, edges: Element, links: Element) -> N
 
 
 def _restore_lanes(edge: Element, drawn: list[Element]) -> None:
-    """Widths, which netconvert writes into no plain XML where all lanes have one; who may use a center lane."""
+    """Sets widths, which netconvert omits where all lanes have one, and the vehicle class of a center lane."""
     there = {int(lane.get("index")): lane for lane in edge.iterfind("lane")}
     for index, source in enumerate(drawn[: int(edge.get("numLanes", 1))]):
         lane = there[index] if index in there else etree.SubElement(edge, "lane", index=str(index))

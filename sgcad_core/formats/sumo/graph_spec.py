@@ -50,7 +50,7 @@ def spec_of_graph(graph: LaneGraph) -> RoadSpec:
         first = fault.errors(include_url=False)[0]
         what = f"the network cannot be told as a road spec: {'.'.join(map(str, first['loc']))}: {first['msg']}"
         finding = Finding(source="net_xml", what=what, value=str(first["input"])[:80], remedy="use a smaller network")
-        raise InvalidOutput(finding.line(), [finding]) from fault
+        raise InvalidOutput.of(finding) from fault
 
 
 def _road(graph: LaneGraph, name: str) -> dict[str, object]:

@@ -206,5 +206,4 @@ def _path(element: Element) -> str:
 
 
 def _invalid(what: str, where: str, value: str, remedy: str) -> InvalidOutput:
-    finding = Finding(source="net_xml", what=what, where=where, value=value, remedy=remedy)
-    return InvalidOutput(finding.line(), [finding])
+    return InvalidOutput.of(Finding(source="net_xml", what=what, where=where, value=value, remedy=remedy))

@@ -1,7 +1,7 @@
 """SUMO's netconvert as a process: plain XML in, road network out.
 
 Nothing in the plain XML is trusted: the schema is checked first (negative lane numbers crash netconvert),
-and a death by its own fault is a result, not an exception. What others did to it (a kill, a full disk) says nothing of
+and a crash of its own is a result, not an exception. A kill or a full disk says nothing of
 the network and is an exception: the case fails, and is tried again. Knows no plugin.
 """
 
@@ -21,7 +21,7 @@ from sgcad_core.formats.opendrive.write import write_xodr
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
 from sgcad_core.records.specs import RoadSpec
 from sgcad_core.system.subprocess_limits import ended_from_outside, run_limited
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.temp_folders import temp_folder
 
 TIMEOUT_S = 60.0
 LEAST_FREE = 1 << 20
@@ -47,7 +47,7 @@ def compile_network(plain: PlainXml, spec: RoadSpec | None = None) -> RoadNetwor
 
     Bad content leaves net_xml and xodr None, `log` says why and `returncode` is not 0 (negative: the
     signal netconvert died of; 124: it took longer than 60 s). Raises MissingTool, SimulationFailed (killed, disk full).
-    The last few that compiled are remembered: who changes an actor of a case has its network already.
+    The last few networks are kept, since an edit of an actor leaves the network as it is.
     """
     if findings := xsd_findings(plain):
         log = "\n".join(f.line() for f in findings)
@@ -62,7 +62,7 @@ def compile_network(plain: PlainXml, spec: RoadSpec | None = None) -> RoadNetwor
 
 
 def _compile(plain: PlainXml, spec: RoadSpec | None) -> RoadNetwork:
-    with scratch("net") as folder:
+    with temp_folder("net") as folder:
         code, said = _run(plain, folder)
         net = _read(folder / "road.net.xml")
     log = _without_closed(said, spec)
@@ -120,15 +120,6 @@ def _read(file: Path) -> str | None:
     if not file.exists():
         return None
     return re.sub(r"<!--.*?-->\s*", "", file.read_text(encoding="utf-8"), count=1, flags=re.DOTALL)
-
-
-def net_of_xodr(xodr: str) -> tuple[str, str]:
-    """(.net.xml, netconvert's words) as netconvert reads an OpenDRIVE file by itself; "" where it cannot."""
-    with scratch("back") as folder:
-        (folder / "road.xodr").write_text(xodr, encoding="utf-8")
-        code, log = _call(["--opendrive-files", "road.xodr", *FLAGS, "-o", "road.net.xml"], folder)
-        net = _read(folder / "road.net.xml") if code == 0 else None
-    return net or "", log
 
 
 def plain_files(file: Path, source: Sequence[str], folder: Path, timeout_s: float) -> tuple[Path, Path, Path]:

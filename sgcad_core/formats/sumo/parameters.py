@@ -1,4 +1,4 @@
-"""Names of what networks carry beyond SUMO's own terms, as <param> of edges and nodes in plain XML and .net.xml.
+"""Keys of the project's <param> elements of edges and nodes in plain XML and .net.xml.
 
 A key that is missing says that nothing is known (a map, a network that a model wrote), not that there is none.
 """
@@ -13,8 +13,8 @@ LIMIT = "speed_limit"
 """Of an edge: `POSTED` with mph where the report tells a limit, else `USUAL`: the lanes' speed is an assumption."""
 POSTED, USUAL = "posted_mph ", "assumed"
 AREA = "area"
-"""Of an edge: rural, town, motorway, where told."""
+"""Of an edge: rural, town, motorway, where stated."""
 CENTER_LINE = "center_line"
-"""Of an edge: the marking between the directions, where told."""
+"""Of an edge: the marking between the directions, where stated."""
 CONTROL = "control"
 """Of a node: what the spec says stands there (none, signal, flashing, stop, all_way_stop, yield)."""

@@ -8,7 +8,6 @@ Metres and m/s; x east, y north. Knows no OpenDRIVE and starts no program.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cache
 from typing import NamedTuple
 
 from lxml import etree
@@ -17,7 +16,7 @@ from sgcad_core import settings
 from sgcad_core.case.records import Finding, PlainXml
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.parameters import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
-from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text
+from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text, xml_schema
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.records.specs import Beside, Node, NodeControl, Road, RoadSpec, ToldRoad
@@ -73,10 +72,10 @@ _TYPES: Mapping[NodeControl, str] = {
 def plain_xml(spec: RoadSpec, told: Mapping[str, ToldRoad] | None = None) -> PlainXml:
     """Write a spec as plain XML. Raises InvalidOutput with findings where its references do not hold.
 
-    `told`: road id -> what the report tells of it; a road without an entry has the limit that its spec states.
+    `told`: road id -> facts of the report; a road without an entry has the limit of its spec.
     """
     if findings := spec_findings(spec):
-        raise InvalidOutput("\n".join(f.line() for f in findings), findings)
+        raise InvalidOutput.of(*findings)
     drawn = roadways(spec)
     joined = _connections(links(spec, drawn), spec)
     return PlainXml(nodes=_nodes(spec), edges=_edges(drawn, told or {}), connections=joined)
@@ -219,9 +218,10 @@ def sumo_findings(kind: str, text: str) -> list[Finding]:
     except InvalidOutput as fault:
         return list(fault.findings)
     remedy = f"follow SUMO's schema of {kind} files"
+    schema = xml_schema(settings.sumo_home() / "data" / "xsd" / f"{kind}_file.xsd")
     return [
         Finding(source="sumo_xsd", what=message, where=f"{kind}, line {line}", remedy=remedy)
-        for line, message in schema_errors(_schema(kind), root)
+        for line, message in schema_errors(schema, root)
     ] or list(_too_wide(kind, root))
 
 
@@ -236,9 +236,3 @@ def _too_wide(kind: str, root: Element) -> Iterator[Finding]:
                 value=edge.get("numLanes"),
                 remedy="give the lanes of one direction, as the report tells them",
             )
-
-
-@cache
-def _schema(kind: str) -> etree.XMLSchema:
-    parser = etree.XMLParser(no_network=True)
-    return etree.XMLSchema(etree.parse(str(settings.sumo_home() / "data" / "xsd" / f"{kind}_file.xsd"), parser))

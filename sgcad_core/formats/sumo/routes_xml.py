@@ -1,4 +1,4 @@
-"""SUMO route files (.rou.xml) written by a model: what they hold, and what is wrong with them against a network.
+"""SUMO route files (.rou.xml) written by a model: their vehicles, and their faults on a network.
 
 Knows SUMO's schema and the lane graph; starts no program and knows no crash.
 """
@@ -9,19 +9,19 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from sgcad_core.case.records import Finding
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.sumo.plain_xml import sumo_findings
 from sgcad_core.formats.xml import Element, parse_xml
 from sgcad_core.roads.lane_graph import LaneGraph
 
 SOURCE = "sumo_routes"
-_finding = Finder(SOURCE)
+_finding = FindingFactory(SOURCE)
 MOVERS = ("vehicle", "person")
 _OUTWARD = ("trip", "flow", "personFlow", "container", "include")
-"""Elements that let SUMO choose or multiply, so that who drives is not what was written."""
+"""Elements for which SUMO generates vehicles or routes, so that traffic differs from the file."""
 
 
-class Mover(NamedTuple):
+class RouteActor(NamedTuple):
     """A vehicle or person of a route file; sizes in metres, None where its type states none."""
 
     id: str
@@ -31,7 +31,7 @@ class Mover(NamedTuple):
     width_m: float | None
 
 
-def movers(routes_xml: str) -> tuple[Mover, ...]:
+def route_actors(routes_xml: str) -> tuple[RouteActor, ...]:
     """Vehicles and persons in order. Raises InvalidOutput for what is no XML."""
     root = parse_xml(routes_xml, "routes")
     types = {t.get("id"): t for t in root.iterfind("vType")}
@@ -39,13 +39,13 @@ def movers(routes_xml: str) -> tuple[Mover, ...]:
     return tuple(_mover(e, types, routes) for e in root if e.tag in MOVERS)
 
 
-def _mover(element: Element, types: dict[str, Element], routes: dict[str, str]) -> Mover:
+def _mover(element: Element, types: dict[str, Element], routes: dict[str, str]) -> RouteActor:
     inner = element.find("route")
     edges = inner.get("edges", "") if inner is not None else routes.get(element.get("route"), "")
     if element.tag == "person":
         edges = " ".join(walk.get("edges", "") for walk in element.iterfind("walk"))
     kind = types.get(element.get("type"))
-    return Mover(
+    return RouteActor(
         element.get("id", ""),
         element.get("depart", ""),
         tuple(edges.split()),
@@ -67,7 +67,7 @@ def routes_findings(routes_xml: str, graph: LaneGraph, actors: Sequence[str]) ->
     if faults := sumo_findings("routes", routes_xml):
         return faults
     root = parse_xml(routes_xml, "routes")
-    return [*_elements(root), *_ids(movers(routes_xml), actors), *_ways(movers(routes_xml), graph)]
+    return [*_elements(root), *_ids(route_actors(routes_xml), actors), *_ways(route_actors(routes_xml), graph)]
 
 
 def _elements(root: Element) -> Iterator[Finding]:
@@ -76,7 +76,7 @@ def _elements(root: Element) -> Iterator[Finding]:
             yield _finding(f"<{name}> is not read", name, "", "write each actor as a <vehicle> with its own <route>")
 
 
-def _ids(found: Sequence[Mover], actors: Sequence[str]) -> Iterator[Finding]:
+def _ids(found: Sequence[RouteActor], actors: Sequence[str]) -> Iterator[Finding]:
     ids = [m.id for m in found]
     for name in sorted({n for n in ids if ids.count(n) > 1}):
         yield _finding("two vehicles have one id", "vehicle", name, "give each actor one vehicle")
@@ -91,7 +91,7 @@ def _ids(found: Sequence[Mover], actors: Sequence[str]) -> Iterator[Finding]:
             yield _finding("the actor's size is not told", m.id, "", "give its <vType> length and width in meters")
 
 
-def _ways(found: Sequence[Mover], graph: LaneGraph) -> Iterator[Finding]:
+def _ways(found: Sequence[RouteActor], graph: LaneGraph) -> Iterator[Finding]:
     onward = {(c.from_edge, c.to_edge) for c in graph.connections}
     known = ", ".join(graph.edges)
     for m in found:

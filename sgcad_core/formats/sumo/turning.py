@@ -53,7 +53,7 @@ def _apart(leg: JunctionLeg, wanted: JunctionLeg, turn_rad: float) -> float:
     return abs(math.remainder(leg.angle_rad + turn_rad - wanted.angle_rad, math.tau)) + LANE_RAD * lanes
 
 
-def turned(plain: PlainXml, turn_rad: float) -> PlainXml:
+def turned_network(plain: PlainXml, turn_rad: float) -> PlainXml:
     """The same network turned about (0, 0). Raises InvalidOutput for XML that cannot be read."""
     if not turn_rad:
         return plain
@@ -64,10 +64,10 @@ def turned(plain: PlainXml, turn_rad: float) -> PlainXml:
     )
 
 
-def prolonged(plain: PlainXml, least_m: float) -> PlainXml:
-    """The same network, its dead ends moved straight on until the roads to them are so long.
+def with_longer_ends(plain: PlainXml, least_m: float) -> PlainXml:
+    """The network with its dead ends moved straight outwards until the roads to them have a length.
 
-    A cut ends at the next junction, often nearer than an approach at speed begins. Raises InvalidOutput as `turned`.
+    A cut ends at the next junction, often too near for an approach at speed. Raises InvalidOutput as `turned_network`.
     """
     nodes, edges = parse_xml(plain.nodes, "plain_xml nodes"), parse_xml(plain.edges, "plain_xml edges")
     for node in nodes.iterfind("node[@type='dead_end']"):

@@ -22,9 +22,10 @@ from plugins.tracker.mlflow_store import Store
 Store("sqlite:///" + sys.argv[1], "study/x").experiment_id
 """
 HOLD = """
-import fcntl, os, sys, time
+import sys, time
+from filelock import FileLock
 
-fcntl.flock(os.open(sys.argv[1], os.O_RDONLY), fcntl.LOCK_EX)
+FileLock(sys.argv[1]).acquire()
 print("held", flush=True)
 time.sleep(600)
 """
@@ -96,7 +97,7 @@ def test_a_broken_database_has_no_identity(tmp_path):
 
 
 def test_waiting_for_the_lock_ends_with_its_holder(tmp_path):
-    holder = subprocess.Popen([sys.executable, "-c", HOLD, str(tmp_path)], stdout=subprocess.PIPE)
+    holder = subprocess.Popen([sys.executable, "-c", HOLD, str(tmp_path / ".mlflow.db.lock")], stdout=subprocess.PIPE)
     holder.stdout.readline()
     waiting = threading.Thread(target=lambda: make_database(tmp_path / "mlflow.db"))
     waiting.start()

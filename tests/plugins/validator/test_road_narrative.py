@@ -5,7 +5,7 @@ import pytest
 from plugins.road_writer.template import Template
 from plugins.validator.road_narrative import RoadNarrative
 from sgcad_core.asking.prompts import answer_schema
-from sgcad_core.asking.schema_holds import narrowed
+from sgcad_core.asking.schema_holds import narrowed_schema
 from sgcad_core.case.records import Context, CrashReport, Diagram, Evidence, Finding, RoadNetwork
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
@@ -111,7 +111,7 @@ def test_a_junction_laid_the_wrong_way_round_is_found_and_held_to_the_legs_that_
 
     assert sides(right) == []
     (found,) = sides(wrong)
-    legs = narrowed(ANSWER, found.holds)["anyOf"][0]["properties"]["legs"]
+    legs = narrowed_schema(ANSWER, found.holds)["anyOf"][0]["properties"]["legs"]
     assert legs["minItems"] == len(right)
     bearings = [place["properties"]["bearing"]["enum"] for place in legs["prefixItems"]]
     assert bearings == [[bearing] for bearing in "NESW" if bearing in right]
@@ -249,7 +249,7 @@ def test_a_t_with_four_legs_is_held_to_three_unless_a_diagram_may_show_another()
     legs = tuple(leg(bearing, 1, 1) for bearing in "NESW")
     (found,) = [f for f in findings(FROM_THE_SIDE, network(*legs)) if "leg too many" in f.what]
     assert (found.severity, found.holds[0].at_most) == ("repair", 3)
-    held_to = narrowed(ANSWER, found.holds)["anyOf"][0]["properties"]["legs"]
+    held_to = narrowed_schema(ANSWER, found.holds)["anyOf"][0]["properties"]["legs"]
     assert (held_to["minItems"], held_to["maxItems"]) == (2, 3)
     assert all(f.severity == "note" for f in findings(FROM_THE_SIDE, network(*legs), pictured=True))
 

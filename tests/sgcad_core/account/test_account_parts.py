@@ -9,7 +9,7 @@ from sgcad_core.account.actors import actor_items
 from sgcad_core.account.assumed import assumed_items
 from sgcad_core.account.build import account_of
 from sgcad_core.account.contacts import contact_items
-from sgcad_core.account.inputs import Made, is_told
+from sgcad_core.account.inputs import ExecutedCase, is_stated
 from sgcad_core.account.motion import motion_items
 from sgcad_core.account.notes import notes_of
 from sgcad_core.account.places import place_items
@@ -33,7 +33,7 @@ def made(tmp_path_factory):
     run = CaseRun(load("template.yaml", ("tracker=none",)), Case(DEMO, "c1"), run_at_once)
     run.go()
     record = run.record()
-    return Made(record.reading, record.network, record.scenario, record.execution, record.drawn)
+    return ExecutedCase(record.reading, record.network, record.scenario, record.execution, record.drawn)
 
 
 def fact(field, value, **more):
@@ -161,10 +161,10 @@ def test_a_junction_without_a_told_control_is_assumed_to_have_none_and_labels_ar
 
 
 def test_only_sentences_and_persons_tell():
-    assert is_told(fact("f", 1))
-    assert is_told(fact("f", 1, basis="person", status="inferred"))
-    assert not is_told(fact("f", 1, status="inferred"))
-    assert not is_told(fact("f", 1, basis="model"))
+    assert is_stated(fact("f", 1))
+    assert is_stated(fact("f", 1, basis="person", status="inferred"))
+    assert not is_stated(fact("f", 1, status="inferred"))
+    assert not is_stated(fact("f", 1, basis="model"))
 
 
 # ------------------------------------------------------------------ what was not read

@@ -2,19 +2,19 @@
 
 import pytest
 
-from sgcad_core.asking.case_cache import KEPT, OncePerCase
+from sgcad_core.asking.case_cache import KEPT, CaseCache
 from sgcad_core.case.records import Context, Diagram
 from sgcad_core.errors import InvalidOutput
 
 
 def test_a_first_attempt_makes_anew_and_further_ones_remember() -> None:
-    once, made = OncePerCase[int](), iter(range(10))
+    once, made = CaseCache[int](), iter(range(10))
     context = Context(narrative="V1 struck V2.")
     assert [once.of(context, n, lambda: next(made)) for n in (1, 2, 3, 1, 2)] == [0, 0, 0, 1, 1]
 
 
 def test_other_evidence_is_another_case() -> None:
-    once = OncePerCase[str]()
+    once = CaseCache[str]()
     text = "V1 struck V2."
     plain, drawn = (
         Context(narrative=text),
@@ -26,7 +26,7 @@ def test_other_evidence_is_another_case() -> None:
 
 
 def test_a_failure_is_not_remembered() -> None:
-    once, context = OncePerCase[str](), Context(narrative="V1.")
+    once, context = CaseCache[str](), Context(narrative="V1.")
 
     def fail() -> str:
         raise InvalidOutput("no JSON")
@@ -37,7 +37,7 @@ def test_a_failure_is_not_remembered() -> None:
 
 
 def test_it_does_not_grow_without_end() -> None:
-    once = OncePerCase[int]()
+    once = CaseCache[int]()
     for i in range(KEPT + 5):
         once.of(Context(narrative=str(i)), 1, lambda i=i: i)  # type: ignore[misc]
     assert once.of(Context(narrative="0"), 2, lambda: -1) == -1

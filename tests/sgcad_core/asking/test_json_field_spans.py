@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sgcad_core.asking.json_field_spans import first_tokens, grounding, is_refusal, name_of, open_path, spans
+from sgcad_core.asking.json_field_spans import field_spans, first_tokens, grounding, is_refusal, name_of, open_path
 
 SCALARS = st.none() | st.booleans() | st.integers(-99, 99) | st.floats(-9, 9) | st.text(max_size=8)
 VALUES = st.recursive(
@@ -33,7 +33,7 @@ def leaf_values(value: Any, path: str = "") -> dict[str, Any]:
 @settings(max_examples=150, deadline=None)
 def test_every_leaf_is_found_at_its_path_with_its_text(value: Any, indent: int | None) -> None:
     text = json.dumps(value, indent=indent, ensure_ascii=False)
-    found = {s.path: json.loads(text[s.start : s.end]) for s in spans(text) if not s.path.endswith("[]")}
+    found = {s.path: json.loads(text[s.start : s.end]) for s in field_spans(text) if not s.path.endswith("[]")}
     assert found == leaf_values(value)
 
 
@@ -41,7 +41,7 @@ def test_every_leaf_is_found_at_its_path_with_its_text(value: Any, indent: int |
 @settings(max_examples=150, deadline=None)
 def test_a_text_that_breaks_off_gives_the_fields_up_to_there(value: Any, cut: int) -> None:
     text = json.dumps(value, separators=(",", ":"))
-    whole, part = spans(text), spans(text[:cut])
+    whole, part = field_spans(text), field_spans(text[:cut])
     assert [s.path for s in part] == [s.path for s in whole][: len(part)]
     assert open_path(text[:cut])
 
@@ -84,7 +84,7 @@ def test_a_field_begins_in_the_token_that_holds_its_first_letter(value: Any, siz
     while ends[-1] < len(text):
         ends.append(ends[-1] + sizes[len(ends) % len(sizes)])
     found = first_tokens(text, ends[1:])
-    firsts = {span.path: span for span in reversed(spans(text))}
+    firsts = {span.path: span for span in reversed(field_spans(text))}
     for span in firsts.values():
         assert ends[found[span.path]] <= span.start < ends[found[span.path] + 1]
 

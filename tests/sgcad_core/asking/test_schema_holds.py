@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from plugins.backbone.engine.grammar import Grammar, GrammarCompiler
 from sgcad_core.asking.prompts import answer_schema
-from sgcad_core.asking.schema_holds import narrowed
+from sgcad_core.asking.schema_holds import narrowed_schema
 from sgcad_core.case.records import Hold
 from sgcad_core.records.specs import BehaviorSpec, RoadLayout
 from tests.plugins.backbone import tiny
@@ -35,7 +35,7 @@ def accepts(grammar: Grammar, answer: object) -> bool:
 
 
 def grammar_of(spec: type, *holds: Hold) -> Grammar:
-    return MAKER.grammar(narrowed(answer_schema(spec), holds))
+    return MAKER.grammar(narrowed_schema(answer_schema(spec), holds))
 
 
 def actor(name: str, maneuver: str = "straight", road: str = "N", direction: str = "forward") -> dict[str, object]:
@@ -131,7 +131,7 @@ def test_a_refusal_stays_a_way_out():
     ],
 )
 def test_what_no_answer_could_meet_is_passed_over(hold):
-    assert narrowed(answer_schema(BehaviorSpec), [hold]) == narrowed(answer_schema(BehaviorSpec), [])
+    assert narrowed_schema(answer_schema(BehaviorSpec), [hold]) == narrowed_schema(answer_schema(BehaviorSpec), [])
 
 
 def test_a_hold_reads_as_one_line():
@@ -152,7 +152,7 @@ def test_of_two_holds_that_exclude_each_other_the_first_is_kept(first, second):
 def test_a_place_beyond_the_most_items_is_passed_over(order: int) -> None:
     last = Hold(items="legs", at=3, either=({"bearing": ("W",)},))
     holds = [Hold(items="legs", at_most=3), last][::order]
-    legs = narrowed(answer_schema(RoadLayout), holds)["anyOf"][0]["properties"]["legs"]
+    legs = narrowed_schema(answer_schema(RoadLayout), holds)["anyOf"][0]["properties"]["legs"]
     assert legs["minItems"] <= legs["maxItems"]
     assert Hold(items="legs", at_most=3).line() == "at most 3 legs"
 

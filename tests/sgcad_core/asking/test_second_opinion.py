@@ -6,7 +6,7 @@ import math
 import pytest
 
 from sgcad_core import settings
-from sgcad_core.asking.second_opinion import load_weights, probabilities, seconded, whole
+from sgcad_core.asking.second_opinion import load_weights, probabilities, with_gist_opinion, with_model_opinion
 from sgcad_core.case.records import Context, CrashReport, Diagram, Generation, Query, Token
 from sgcad_core.errors import ConfigError
 from sgcad_core.reading.second_reader.field_claims import KINDS
@@ -42,7 +42,7 @@ def test_an_answer_becomes_an_opinion_of_the_report_with_the_weights_of_its_prom
         asked.append((context, query))
         return Generation(text=json.dumps(ANSWER))
 
-    told = seconded(REPORT, "mini_gist", ask)
+    told = with_gist_opinion(REPORT, "mini_gist", ask)
     assert told.opinion is not None
     assert {key: one.value for key, one in told.opinion.heard.items()} == ANSWER
     assert {one.p for one in told.opinion.heard.values()} == {0.5}, "a server without probabilities"
@@ -52,7 +52,7 @@ def test_an_answer_becomes_an_opinion_of_the_report_with_the_weights_of_its_prom
 
 
 def test_a_report_without_an_answer_stays_the_rules_and_says_so() -> None:
-    told = seconded(REPORT, "mini_gist", lambda context, query: Generation(text="no"))
+    told = with_gist_opinion(REPORT, "mini_gist", lambda context, query: Generation(text="no"))
     assert told.opinion is None
     assert "no second opinion" in told.notes[-1]
 
@@ -111,7 +111,7 @@ def test_the_whole_report_is_asked_in_two_questions_with_its_drawing() -> None:
         text, at = (ROAD, '"N"') if len(asked) == 1 else (CRASH, '"S"')
         return Generation(text=text, tokens=tokens(text, at, 0.75))
 
-    told = whole(NUMBERED, ask)
+    told = with_model_opinion(NUMBERED, ask)
     assert told.opinion is not None
     assert told.opinion.answered is not None
     answered = told.opinion.answered
@@ -131,13 +131,13 @@ def test_of_a_report_that_numbers_nobody_nothing_is_asked() -> None:
     def ask(context: Context, query: Query) -> Generation:
         raise AssertionError("asked")
 
-    assert whole(REPORT, ask) is REPORT
+    assert with_model_opinion(REPORT, ask) is REPORT
 
 
 @pytest.mark.parametrize("answers", [["no"], [ROAD, "no"], ['{"refuse": "too thin", "missing": []}']])
 def test_without_an_answer_the_rules_stand_and_the_notes_say_so(answers: list[str]) -> None:
     some = iter(answers)
-    told = whole(NUMBERED, lambda context, query: Generation(text=next(some)))
+    told = with_model_opinion(NUMBERED, lambda context, query: Generation(text=next(some)))
     assert told.opinion is None
     assert "no second opinion" in told.notes[-1]
 

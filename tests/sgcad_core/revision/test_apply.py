@@ -9,12 +9,12 @@ from sgcad_core.reading.reading_with_edits import holds, with_edits
 from sgcad_core.records.edits import AS_READ, Edit, by_person, canonical, effective
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
-from sgcad_core.revision import standing
-from sgcad_core.revision.actors import laid_behavior
+from sgcad_core.revision import unapplied_edits
+from sgcad_core.revision.actors import behavior_with_edits
 from sgcad_core.revision.fields import EDITABLE, fields_of
-from sgcad_core.revision.file import merged, undone
-from sgcad_core.revision.finding_fields import yielding
-from sgcad_core.revision.roads import laid_roads
+from sgcad_core.revision.file import with_new_edits, without_last_edits
+from sgcad_core.revision.finding_fields import overruled
+from sgcad_core.revision.roads import roads_with_edits
 from sgcad_core.revision.spec_to_layout import layout_of
 from sgcad_core.revision.values import junction_kind_of, value_of
 from sgcad_core.roads.layout import road_spec
@@ -39,81 +39,81 @@ def edits(**values):
 
 
 def test_lanes_of_one_leg_change_and_no_others():
-    laid = laid_roads(SPEC, LAYOUT, {"roads.N.lanes_forward": 3})
+    laid = roads_with_edits(SPEC, LAYOUT, {"roads.N.lanes_forward": 3})
     assert [r.lanes_forward for r in laid.roads] == [3, 1, 1]
-    assert laid_roads(laid, LAYOUT, {"roads.N.lanes_forward": 3}) == laid
+    assert roads_with_edits(laid, LAYOUT, {"roads.N.lanes_forward": 3}) == laid
 
 
 def test_junctions_become_what_a_person_says_and_stand():
     for kind in ("none", "t", "four_leg", "driveway", "roundabout", "parking_lot", "ramp"):
-        laid = laid_roads(SPEC, LAYOUT, {"junction.kind": kind})
+        laid = roads_with_edits(SPEC, LAYOUT, {"junction.kind": kind})
         assert junction_kind_of(laid) == kind
-        assert standing(edits(junction__kind=kind), "road", laid) == []
+        assert unapplied_edits(edits(junction__kind=kind), "road", laid) == []
 
 
 def test_the_stem_lies_where_a_person_says():
-    laid = laid_roads(SPEC, LAYOUT, {"junction.stem": "E"})
+    laid = roads_with_edits(SPEC, LAYOUT, {"junction.stem": "E"})
     assert value_of("junction.stem", laid, None) == "E"
     assert {r.id for r in laid.roads} == {"N", "S", "E"}
 
 
 def test_a_leg_is_added_by_its_bearing_and_taken_away_by_its_name():
-    more = laid_roads(SPEC, LAYOUT, {"roads.E.present": True})
+    more = roads_with_edits(SPEC, LAYOUT, {"roads.E.present": True})
     assert {r.id for r in more.roads} == {"N", "S", "W", "E"}
-    assert {r.id for r in laid_roads(more, LAYOUT, {"roads.E.present": False}).roads} == {"N", "S", "W"}
+    assert {r.id for r in roads_with_edits(more, LAYOUT, {"roads.E.present": False}).roads} == {"N", "S", "W"}
 
 
 def test_signs_stand_beside_the_main_road_where_nobody_says_where():
     plain = SPEC.model_copy(update={"roads": tuple(r.model_copy(update={"minor": False}) for r in SPEC.roads)})
-    laid = laid_roads(plain, LAYOUT, {"junction.control": "stop"})
+    laid = roads_with_edits(plain, LAYOUT, {"junction.control": "stop"})
     assert [r.id for r in laid.roads if r.minor] == ["W"]
 
 
 def test_another_heading_is_another_road_and_another_maneuver_another_exit():
-    laid = laid_behavior(BEHAVIOR, SPEC, {"vehicles.V2.heading": "N", "vehicles.V1.maneuver": "turn_right"})
+    laid = behavior_with_edits(BEHAVIOR, SPEC, {"vehicles.V2.heading": "N", "vehicles.V1.maneuver": "turn_right"})
     assert [(a.road, a.exit_road) for a in laid.actors] == [("W", "S"), ("S", "N")]
 
 
 def test_naming_the_struck_as_striker_turns_the_contact_around_and_sides_stay_with_their_vehicles():
-    laid = laid_behavior(BEHAVIOR, SPEC, {"contacts.0.striker": "V1"})
+    laid = behavior_with_edits(BEHAVIOR, SPEC, {"contacts.0.striker": "V1"})
     assert laid.contacts[0] == Contact(striker="V1", struck="V2", striker_area="left", struck_area="front")
 
 
 def test_who_is_taken_out_takes_the_contacts_along():
-    laid = laid_behavior(BEHAVIOR, SPEC, {"vehicles.V2.present": False})
+    laid = behavior_with_edits(BEHAVIOR, SPEC, {"vehicles.V2.present": False})
     assert [a.id for a in laid.actors] == ["V1"]
     assert laid.contacts == ()
 
 
 def test_somebody_joins_and_is_struck():
     facts = {"others.P1.present": True, "contacts.1.striker": "V1", "contacts.1.struck": "P1"}
-    laid = laid_behavior(BEHAVIOR, SPEC, facts)
+    laid = behavior_with_edits(BEHAVIOR, SPEC, facts)
     assert [(a.id, a.kind) for a in laid.actors] == [("V1", "car"), ("V2", "suv"), ("P1", "pedestrian")]
     assert (laid.contacts[1].striker, laid.contacts[1].struck) == ("V1", "P1")
 
 
 def test_an_avoided_contact_is_a_near_crash_and_back():
-    near = laid_behavior(BEHAVIOR, SPEC, {"near_crash": True, "near_crash.clearance_m": 1.5})
+    near = behavior_with_edits(BEHAVIOR, SPEC, {"near_crash": True, "near_crash.clearance_m": 1.5})
     assert (near.contacts, near.near_crash.conflict, near.near_crash.clearance_m) == ((), BEHAVIOR.contacts[0], 1.5)
-    assert laid_behavior(near, SPEC, {"near_crash": False}) == BEHAVIOR
+    assert behavior_with_edits(near, SPEC, {"near_crash": False}) == BEHAVIOR
 
 
 def test_what_does_not_stand_is_told_with_its_reason():
     given = edits(vehicles__V9__kind="bus", V1__start_lane=4, contacts__5__striker="V1")
-    told = standing(given, "scenario", SPEC, BEHAVIOR)
+    told = unapplied_edits(given, "scenario", SPEC, BEHAVIOR)
     assert [f.where for f in told] == ["vehicles.V9.kind", "vehicles.V1.start_lane", "contacts.5.striker"]
     assert "there are V1, V2" in told[0].what
     assert "1 lane(s)" in told[1].what
     assert {f.severity for f in told} == {"doubt"}
-    assert "there are N, S, W" in standing(edits(roads__Q__lanes_forward=1), "road", SPEC)[0].what
+    assert "there are N, S, W" in unapplied_edits(edits(roads__Q__lanes_forward=1), "road", SPEC)[0].what
 
 
 def test_a_finding_from_the_narrative_yields_to_a_person_and_a_fault_of_the_drawing_does_not():
     lanes = Finding(source="road_narrative", what="has 2 lanes", where="roads N, S")
     given = edits(roads__N__lanes_forward=3)
-    assert yielding(lanes, given).severity == "note"
-    assert yielding(lanes, edits(roads__W__lanes_forward=3)).severity == "repair"
-    assert yielding(lanes.model_copy(update={"source": "topology"}), given).severity == "repair"
+    assert overruled(lanes, given).severity == "note"
+    assert overruled(lanes, edits(roads__W__lanes_forward=3)).severity == "repair"
+    assert overruled(lanes.model_copy(update={"source": "topology"}), given).severity == "repair"
 
 
 def test_a_layout_comes_back_from_its_spec():
@@ -175,10 +175,10 @@ EDITS = st.lists(
 @given(EDITS)
 def test_laying_twice_changes_nothing_more(pairs):
     given_values = dict(pairs)
-    road = laid_roads(SPEC, LAYOUT, given_values)
-    assert laid_roads(road, LAYOUT, given_values) == road
-    behavior = laid_behavior(BEHAVIOR, road, given_values)
-    assert laid_behavior(behavior, road, given_values) == behavior
+    road = roads_with_edits(SPEC, LAYOUT, given_values)
+    assert roads_with_edits(road, LAYOUT, given_values) == road
+    behavior = behavior_with_edits(BEHAVIOR, road, given_values)
+    assert behavior_with_edits(behavior, road, given_values) == behavior
 
 
 @settings(max_examples=60, deadline=None)
@@ -186,9 +186,15 @@ def test_laying_twice_changes_nothing_more(pairs):
 def test_every_edit_stands_or_is_told(pairs):
     given_edits = [Edit(field=name, value=value) for name, value in pairs]
     values = {e.field: e.value for e in effective(given_edits)}
-    road = laid_roads(SPEC, LAYOUT, values)
-    behavior = laid_behavior(BEHAVIOR, road, values)
-    told = {f.where for f in (*standing(given_edits, "road", road), *standing(given_edits, "scenario", road, behavior))}
+    road = roads_with_edits(SPEC, LAYOUT, values)
+    behavior = behavior_with_edits(BEHAVIOR, road, values)
+    told = {
+        f.where
+        for f in (
+            *unapplied_edits(given_edits, "road", road),
+            *unapplied_edits(given_edits, "scenario", road, behavior),
+        )
+    }
     for edit in effective(given_edits):
         if not edit.field.endswith(".heading"):
             assert edit.field in told or value_of(edit.field, road, behavior) == edit.value
@@ -201,13 +207,13 @@ def test_any_history_is_undone_step_by_step(revisions):
     for pairs in revisions:
         first = Edit(field=pairs[0][0], value=pairs[0][1])
         new = [Edit(field=name, value=value, when=first.when) for name, value in dict(pairs).items()]
-        longer = merged(history, new)
-        assert merged(longer, new) == longer
+        longer = with_new_edits(history, new)
+        assert with_new_edits(longer, new) == longer
         history, states = longer, [*states, longer] if longer != history else states
     for before in reversed(states[:-1]):
-        history = undone(history)
+        history = without_last_edits(history)
         assert history == before
-    assert undone(()) == ()
+    assert without_last_edits(()) == ()
 
 
 def test_every_field_of_a_case_is_one_of_the_editable_kinds_with_its_value():

@@ -11,10 +11,10 @@ from plugins.road_writer.template import Template
 from plugins.scenario_writer.rules import Rules
 from plugins.validator.sumo_load import SumoLoad
 from plugins.validator.topology import Topology
+from research.benchmarks.scenes.reimport import differences
 from sgcad_core.case.records import Context, CrashReport, Evidence, RoadNetwork
 from sgcad_core.formats.agreement import network_disagreements
 from sgcad_core.formats.opendrive.checks.check_file import xodr_findings
-from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.net_xml import network_figures, parse_net, segments
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml

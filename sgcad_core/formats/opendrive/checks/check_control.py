@@ -1,4 +1,4 @@
-"""What is wrong with the traffic control of an OpenDRIVE file: signals without lanes, stop lines without signals, ...
+"""Checks of the traffic control of an OpenDRIVE file: signals without lanes, stop lines without signals, ...
 
 Beyond the schema (double ids, controllers without signals): every signal reaches lanes that exist and drive its way,
 one that governs a junction holds for lanes that lead into it, every head has a controller, every stop line a signal.
@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from sgcad_core.case.records import Finding
-from sgcad_core.findings import Finder
+from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.opendrive.controls import SIGNS, is_head
 from sgcad_core.formats.opendrive.furniture import STOP_LINE
 from sgcad_core.formats.opendrive.geometry import number
 from sgcad_core.formats.xml import Element
 
-_finding = Finder("opendrive")
+_finding = FindingFactory("opendrive")
 
 BESIDE_M = 1e-6
 _DRIVEN = ("driving", "bidirectional", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "restricted", "stop")

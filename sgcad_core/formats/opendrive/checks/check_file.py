@@ -1,4 +1,4 @@
-"""What is wrong with an OpenDRIVE file.
+"""Checks of an OpenDRIVE file.
 
 Schema 1.7 (from the installed scenariogeneration package), references, lane links, lengths and gaps: what
 ASAM's rules demand of a network, so that a bad file is known before another tool meets it.
@@ -9,21 +9,17 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from functools import cache
-from importlib.metadata import PackageNotFoundError, distribution
 from itertools import pairwise
 
-from lxml import etree
-
 from sgcad_core.case.records import Finding
-from sgcad_core.errors import InvalidOutput, MissingTool
-from sgcad_core.findings import Finder
+from sgcad_core.errors import InvalidOutput
+from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.opendrive.checks.check_control import control_findings
 from sgcad_core.formats.opendrive.geometry import Pose, arc_lengths_of, end_pose, geometries, number, start_pose
 from sgcad_core.formats.opendrive.lanes import border_t, contact_pose, lane_offset, lane_widths
-from sgcad_core.formats.xml import Element, parse_xml, schema_errors
+from sgcad_core.formats.xml import Element, asam_schema, parse_xml, schema_errors
 
-_finding = Finder("opendrive")
+_finding = FindingFactory("opendrive")
 
 GAP_M = 0.01
 LENGTH_M = 0.001
@@ -31,26 +27,19 @@ LENGTH_M = 0.001
 _NETCONVERT = "draw the junction less sharp or the roads longer"
 
 
-# ------------------------------------------------------------------ what is wrong
+# ------------------------------------------------------------------ findings
 def xodr_findings(xodr: str) -> list[Finding]:
     """Schema faults first; where it holds, references, links, lengths and gaps, then signals. Empty is a pass."""
     try:
         root = parse_xml(xodr, "opendrive")
     except InvalidOutput as fault:
         return list(fault.findings)
-    broken = [_finding(m, f"line {n}", "", "follow OpenDRIVE 1.7") for n, m in schema_errors(_schema(), root)]
+    broken = [
+        _finding(m, f"line {n}", "", "follow OpenDRIVE 1.7")
+        for n, m in schema_errors(asam_schema("opendrive_17_core"), root)
+    ]
     found = broken or [*_doubles(root), *_references(root), *_lengths(root), *_gaps(root)]
     return found or control_findings(root)
-
-
-@cache
-def _schema() -> etree.XMLSchema:
-    try:
-        file = distribution("scenariogeneration").locate_file("schemas/opendrive_17_core.xsd")
-    except PackageNotFoundError as fault:
-        message = "the OpenDRIVE schema comes with scenariogeneration: `pip install scenariogeneration`"
-        raise MissingTool(message) from fault
-    return etree.XMLSchema(etree.parse(str(file), etree.XMLParser(no_network=True)))
 
 
 def _doubles(root: Element) -> Iterator[Finding]:

@@ -4,21 +4,21 @@ What is not supported raises Unsupported when it is compiled, not when it is rea
 """
 
 from sgcad_core.formats.openscenario.actions import control, lateral, presence, routing, spacing, speed, world
-from sgcad_core.formats.openscenario.actions.running import GLOBAL, PRIVATE, Begin, Effect, Running
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.actions.running import GLOBAL, PRIVATE, ActionStart, GlobalEffect, RunningAction
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 MODULES = (control, lateral, presence, routing, spacing, speed, world)
 """Importing them fills the families."""
 
 
-def private_action(node: Node) -> Begin:
+def private_action(node: XmlNode) -> ActionStart:
     """Compile a <PrivateAction>."""
     return PRIVATE.compile(node.only())
 
 
-def global_action(node: Node) -> Effect:
+def global_action(node: XmlNode) -> GlobalEffect:
     """Compile a <GlobalAction>."""
     return GLOBAL.compile(node.only())
 
 
-__all__ = ["GLOBAL", "PRIVATE", "Begin", "Effect", "Running", "global_action", "private_action"]
+__all__ = ["GLOBAL", "PRIVATE", "ActionStart", "GlobalEffect", "RunningAction", "global_action", "private_action"]

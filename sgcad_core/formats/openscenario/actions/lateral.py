@@ -5,28 +5,36 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from sgcad_core.formats.openscenario.actions.running import PRIVATE, Begin, Dynamics, Running, at_once, dynamics, nested
+from sgcad_core.formats.openscenario.actions.running import (
+    PRIVATE,
+    ActionStart,
+    Dynamics,
+    RunningAction,
+    at_once,
+    dynamics,
+    nested,
+)
 from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.families import Family
-from sgcad_core.formats.openscenario.playing.offset_course import Course, beside
+from sgcad_core.formats.openscenario.playing.offset_course import OffsetCourse, beside
 from sgcad_core.formats.openscenario.playing.positions import shifted
 from sgcad_core.formats.openscenario.playing.scene import Scene
 from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, STEEPEST, Transition
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 from sgcad_core.formats.openscenario.roads.way import LanePlace, Way
 
-LATERAL: Family[Begin] = Family("lateral action")
+LATERAL: Family[ActionStart] = Family("lateral action")
 PRIVATE.plays("LateralAction")(lambda node: nested(LATERAL, node))
 _CURVES = {"step": 0.0, "linear": 6.0, "sinusoidal": math.pi**2 / 2, "cubic": 6.0}
 """Largest second derivative of each shape over u in [0, 1]; that of a line, which has none, is taken from the cubic."""
 
 
 @LATERAL.plays("LaneChangeAction")
-def _lane_change(node: Node) -> Begin:
+def _lane_change(node: XmlNode) -> ActionStart:
     over = dynamics(node.need("LaneChangeActionDynamics"))
     target, offset = _target_lane(node.need("LaneChangeTarget").only()), node.number("targetLaneOffset", 0.0)
 
-    def begin(scene: Scene, actor: str) -> Running:
+    def begin(scene: Scene, actor: str) -> RunningAction:
         body, place = _in_lane(scene, actor, node)
         if place is None:
             return at_once(body)
@@ -38,8 +46,8 @@ def _lane_change(node: Node) -> Begin:
     return begin
 
 
-def _in_lane(scene: Scene, actor: str, node: Node) -> tuple[Body, LanePlace | None]:
-    """The entity and its lane; without one a stranger's action is left out (a note), in files of ours it is a fault."""
+def _in_lane(scene: Scene, actor: str, node: XmlNode) -> tuple[Body, LanePlace | None]:
+    """The entity and its lane; without one a third-party file's action is skipped (a note), an own file is at fault."""
     body = scene.body(actor, node)
     scene.pose(actor, node)
     scene.road_map(node)
@@ -48,7 +56,7 @@ def _in_lane(scene: Scene, actor: str, node: Node) -> tuple[Body, LanePlace | No
     return body, place
 
 
-def _way(scene: Scene, body: Body, place: LanePlace, sense: int, node: Node) -> Way:
+def _way(scene: Scene, body: Body, place: LanePlace, sense: int, node: XmlNode) -> Way:
     try:
         way = scene.road_map(node).drive(place, sense, body.route)
     except ValueError as fault:
@@ -58,7 +66,7 @@ def _way(scene: Scene, body: Body, place: LanePlace, sense: int, node: Node) -> 
     return way
 
 
-def _shift(scene: Scene, body: Body, way: Way, last: float, over: Dynamics, aside_counts: bool = True) -> Running:
+def _shift(scene: Scene, body: Body, way: Way, last: float, over: Dynamics, aside_counts: bool = True) -> RunningAction:
     """Run a transition of the lateral offset along a way, from where the entity is."""
     assert body.pose is not None  # noqa: S101 - the caller checks it
     ahead, first = beside(way.points, body.pose)
@@ -68,16 +76,16 @@ def _shift(scene: Scene, body: Body, way: Way, last: float, over: Dynamics, asid
         span = STEEPEST[shape] * abs(last - first) / over.value if over.value else 0.0
     shift = Transition(first, last, shape if span else "step", span, scene.t_s if by_time else 0.0)
     body.timed = None
-    body.course = course = Course(way.points, ahead, shift, by_time, way, aside_counts=aside_counts)
+    body.course = course = OffsetCourse(way.points, ahead, shift, by_time, way, aside_counts=aside_counts)
 
     def ended(scene: Scene) -> bool:
         mine = body.course or course
         return shift.over(scene.t_s if by_time else mine.passed_m) or body.at_end
 
-    return Running(body, ("path",), ended, release_when_over=False).claim()
+    return RunningAction(body, ("path",), ended, release_when_over=False).claim()
 
 
-def _target_lane(node: Node) -> Callable[[Scene, str], int]:
+def _target_lane(node: XmlNode) -> Callable[[Scene, str], int]:
     """The lane id to change to; a relative one counts to the left of the reference entity's driving direction."""
     if node.tag == "AbsoluteTargetLane":
         lane = node.whole("value")
@@ -101,14 +109,14 @@ def _target_lane(node: Node) -> Callable[[Scene, str], int]:
     "LaneOffsetAction",
     remark="without maxLateralAcc the offset is taken at once; the speed counts along the lane, as in esmini",
 )
-def _lane_offset(node: Node) -> Begin:
+def _lane_offset(node: XmlNode) -> ActionStart:
     """The time comes from the largest lateral acceleration; an offset counts to the left of the road's direction."""
     shaped = node.need("LaneOffsetActionDynamics")
     shape, limit = shaped.choice("dynamicsShape", STEEPEST), shaped.limit("maxLateralAcc")
     target = _target_offset(node.need("LaneOffsetTarget").only())
     continuous = node.flag("continuous", False)
 
-    def begin(scene: Scene, actor: str) -> Running:
+    def begin(scene: Scene, actor: str) -> RunningAction:
         body, place = _in_lane(scene, actor, node)
         if place is None:
             return at_once(body)
@@ -118,13 +126,13 @@ def _lane_offset(node: Node) -> Begin:
         span = math.sqrt(_CURVES[shape] * abs(last - first) / limit) if limit > EPSILON else 0.0
         running = _shift(scene, body, way, last, Dynamics(shape, "time", span), aside_counts=False)
         if continuous:
-            return Running(body, ("path",), lambda scene: False).claim()
+            return RunningAction(body, ("path",), lambda scene: False).claim()
         return running
 
     return begin
 
 
-def _target_offset(node: Node) -> Callable[[Scene, Body, LanePlace], float]:
+def _target_offset(node: XmlNode) -> Callable[[Scene, Body, LanePlace], float]:
     value = node.number("value")
     if node.tag == "AbsoluteTargetLaneOffset":
         return lambda scene, body, place: value
@@ -144,7 +152,7 @@ def _target_offset(node: Node) -> Callable[[Scene, Body, LanePlace], float]:
 
 
 @LATERAL.plays("LateralDistanceAction", remark="in the other entity's axes; reached at the rate that maxSpeed allows")
-def _lateral_distance(node: Node) -> Begin:
+def _lateral_distance(node: XmlNode) -> ActionStart:
     """Beside another entity: the distance counts across its heading."""
     other, wanted, freespace = node.text("entityRef"), node.number("distance", 0.0), node.flag("freespace")
     continuous = node.flag("continuous")
@@ -152,7 +160,7 @@ def _lateral_distance(node: Node) -> Begin:
     top = limits.limit("maxSpeed") if limits else math.inf
     left = node.choice("displacement", _SIDES, "any")
 
-    def begin(scene: Scene, actor: str) -> Running:
+    def begin(scene: Scene, actor: str) -> RunningAction:
         body, lead, state = scene.body(actor, node), scene.body(other, node), {"over": False}
         scene.pose(other, node)
         reach = (body.box.width_m + lead.box.width_m) / 2 if freespace else 0.0
@@ -164,7 +172,7 @@ def _lateral_distance(node: Node) -> Begin:
                 state["over"] = True
             _slide(scene, body, lead, min(max(error, -top * scene.dt_s), top * scene.dt_s))
 
-        return Running(body, ("path",), lambda scene: state["over"], control=control).claim()
+        return RunningAction(body, ("path",), lambda scene: state["over"], control=control).claim()
 
     return begin
 

@@ -1,25 +1,23 @@
-"""Actions that say where to drive: FollowTrajectoryAction, AssignRouteAction and AcquirePositionAction."""
+"""Routing actions: FollowTrajectoryAction, AssignRouteAction and AcquirePositionAction."""
 
 from __future__ import annotations
 
 import math
 
-from sgcad_core.formats.openscenario.actions.running import PRIVATE, Begin, Running, at_once, nested
+from sgcad_core.formats.openscenario.actions.running import PRIVATE, ActionStart, RunningAction, at_once, nested
 from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.families import Family
-from sgcad_core.formats.openscenario.playing.offset_course import Course
+from sgcad_core.formats.openscenario.playing.offset_course import OffsetCourse
 from sgcad_core.formats.openscenario.playing.positions import position
 from sgcad_core.formats.openscenario.playing.scene import Scene
 from sgcad_core.formats.openscenario.playing.trajectory import trajectory
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 from sgcad_core.formats.openscenario.roads.routes import route
 from sgcad_core.formats.openscenario.roads.way import LanePlace, Route
 
-ROUTING: Family[Begin] = Family("routing action")
+ROUTING: Family[ActionStart] = Family("routing action")
 PRIVATE.plays("RoutingAction")(lambda node: nested(ROUTING, node))
-ROUTING.refuses(
-    "RandomRouteAction", remark="the ways it draws are nobody's but the simulator's", remedy="assign a route"
-)
+ROUTING.refuses("RandomRouteAction", remark="its random routes are the simulator's own", remedy="assign a route")
 _FOLLOW = "followingMode 'follow' is driven exactly on the path: the standard leaves the steering to the simulator"
 _REMARK = (
     "followingMode 'follow' is driven exactly on the path, at even accelerations between timed vertices, with a note"
@@ -27,7 +25,7 @@ _REMARK = (
 
 
 @ROUTING.plays("FollowTrajectoryAction", remark=_REMARK)
-def _follow(node: Node) -> Begin:
+def _follow(node: XmlNode) -> ActionStart:
     make = trajectory(node)
     mode = node.find("TrajectoryFollowingMode", "TrajectoryFollowing")
     word = "followingMode" if mode and mode.has("followingMode") else "mode"
@@ -36,47 +34,47 @@ def _follow(node: Node) -> Begin:
         mode.note(_FOLLOW)
     eases = follows and next(node.element.iter("Polyline"), None) is not None
 
-    def begin(scene: Scene, actor: str) -> Running:
+    def begin(scene: Scene, actor: str) -> RunningAction:
         body = scene.body(actor, node)
         made = make(scene, actor)
         body.course = body.timed = body.place = None
         body.present, body.at_end = True, False
-        if isinstance(made, Course):
+        if isinstance(made, OffsetCourse):
             return _untimed(body, made)
         body.timed = timed = made.eased(abs(body.speed_mps), scene.dt_s) if eases else made
         body.pace = body.next_mps = None
         body.pose, body.speed_mps = body.seated(timed.pose(scene.step)), timed.speed(scene.step)
-        return Running(body, ("path", "speed"), lambda scene: scene.t_s >= timed.end_s - 1e-9).claim()
+        return RunningAction(body, ("path", "speed"), lambda scene: scene.t_s >= timed.end_s - 1e-9).claim()
 
     return begin
 
 
-def _untimed(body: Body, course: Course) -> Running:
-    """At the own speed; who drives backwards faces against the line unless headings are stated."""
+def _untimed(body: Body, course: OffsetCourse) -> RunningAction:
+    """At the entity's own speed; backwards it faces against the line unless headings are stated."""
     first = course.headings[0] if course.headings is not None else None
     ahead_x, ahead_y = course.points[1] - course.points[0]
     against = first is not None and math.cos(first - math.atan2(ahead_y, ahead_x)) < 0
     course.reverse = body.speed_mps < 0 and (first is None or against)
     body.course = course
     body.pose = body.seated(course.pose)
-    return Running(body, ("path",), lambda scene: course.rest_m <= 1e-6).claim()
+    return RunningAction(body, ("path",), lambda scene: course.rest_m <= 1e-6).claim()
 
 
 @ROUTING.plays("AssignRouteAction", remark="where the lane does not lead onto the route, the straightest way is driven")
-def _assign(node: Node) -> Begin:
+def _assign(node: XmlNode) -> ActionStart:
     made = route(node)
 
-    def begin(scene: Scene, actor: str) -> Running:
+    def begin(scene: Scene, actor: str) -> RunningAction:
         return _sent(scene.body(actor, node), made(scene))
 
     return begin
 
 
 @ROUTING.plays("AcquirePositionAction", remark="drives there by the shortest roads and goes on behind it")
-def _acquire(node: Node) -> Begin:
+def _acquire(node: XmlNode) -> ActionStart:
     where = position(node.need("Position"))
 
-    def begin(scene: Scene, actor: str) -> Running:
+    def begin(scene: Scene, actor: str) -> RunningAction:
         body, roads = scene.body(actor, node), scene.road_map(node)
         here, spot = scene.lane_place(body), where(scene)
         there: LanePlace | None = spot.place or roads.nearest(spot.pose)
@@ -90,7 +88,7 @@ def _acquire(node: Node) -> Begin:
     return begin
 
 
-def _sent(body: Body, way: Route) -> Running:
+def _sent(body: Body, way: Route) -> RunningAction:
     body.route = way
     if body.course is not None and body.course.way is not None:
         body.course = None

@@ -13,13 +13,13 @@ from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.families import Family
 from sgcad_core.formats.openscenario.playing.scene import Scene
 from sgcad_core.formats.openscenario.playing.timed_motion import STEEPEST
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 Test = Callable[[Scene], bool]
 
 
 @dataclass(eq=False)
-class Running:
+class RunningAction:
     """An action under way. A newer action in the same domain of the same body ends it."""
 
     body: Body
@@ -45,7 +45,7 @@ class Running:
                 if release:
                     self.body.release(domain)
 
-    def claim(self) -> Running:
+    def claim(self) -> RunningAction:
         """Take control."""
         for domain in self.domains:
             self.body.owners[domain] = self
@@ -55,28 +55,28 @@ class Running:
         return all(self.body.owners.get(domain) is self for domain in self.domains)
 
 
-Begin = Callable[[Scene, str], Running]
+ActionStart = Callable[[Scene, str], RunningAction]
 """Starts a private action for an actor."""
-Effect = Callable[[Scene], None]
+GlobalEffect = Callable[[Scene], None]
 """Carries out a global action."""
-PRIVATE: Family[Begin] = Family("private action")
-GLOBAL: Family[Effect] = Family("global action")
+PRIVATE: Family[ActionStart] = Family("private action")
+GLOBAL: Family[GlobalEffect] = Family("global action")
 
 
 def control(scene: Scene) -> None:
     """Let every action that controls its body step by step do so."""
     for body in scene.bodies.values():
         for owner in dict.fromkeys(body.owners.values()):
-            if isinstance(owner, Running) and owner.control and not owner.over(scene):
+            if isinstance(owner, RunningAction) and owner.control and not owner.over(scene):
                 owner.control(scene)
 
 
-def at_once(body: Body) -> Running:
+def at_once(body: Body) -> RunningAction:
     """An action that has ended when it has begun."""
-    return Running(body, (), lambda scene: True)
+    return RunningAction(body, (), lambda scene: True)
 
 
-def nested(family: Family[Begin], node: Node) -> Begin:
+def nested(family: Family[ActionStart], node: XmlNode) -> ActionStart:
     """Compile the one action that an element of a family holds."""
     return family.compile(node.only())
 
@@ -105,7 +105,7 @@ class Dynamics(NamedTuple):
         return 2 * self.value / abs(first_mps + last_mps) if change else 0.0
 
 
-def dynamics(node: Node) -> Dynamics:
+def dynamics(node: XmlNode) -> Dynamics:
     """Read a transition; without a span (value 0) it happens at once, whatever its shape."""
     shape = node.choice("dynamicsShape", STEEPEST)
     value = node.number("value", 0.0 if shape == "step" else None)
@@ -118,7 +118,7 @@ def dynamics(node: Node) -> Dynamics:
     return Dynamics(shape if value or dimension == "rate" else "step", dimension, value)
 
 
-def relative_speed(node: Node, name: str, value: float, kind: str) -> Callable[[Scene], float]:
-    """A speed told by that of another entity: a difference or a factor."""
+def relative_speed(node: XmlNode, name: str, value: float, kind: str) -> Callable[[Scene], float]:
+    """A speed relative to another entity's: a difference or a factor."""
     factor = node.choice(kind, ("delta", "factor"), "delta") == "factor"
     return lambda scene: scene.body(name, node).speed_mps * (value if factor else 1) + (0 if factor else value)

@@ -6,15 +6,15 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-from sgcad_core.formats.openscenario.actions.running import PRIVATE, Begin, Running, relative_speed
+from sgcad_core.formats.opendrive.geometry import Pose
+from sgcad_core.formats.openscenario.actions.running import PRIVATE, ActionStart, RunningAction, relative_speed
 from sgcad_core.formats.openscenario.actions.speed import LONGITUDINAL
 from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.distances import ahead_of
-from sgcad_core.formats.openscenario.playing.offset_course import Course
-from sgcad_core.formats.openscenario.playing.positions import Where, position
+from sgcad_core.formats.openscenario.playing.offset_course import OffsetCourse
+from sgcad_core.formats.openscenario.playing.positions import PositionFunction, position
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 STIFFNESS = 0.4
 """Of the spring that keeps a distance, 1/m per unit of the acceleration limit: esmini's value, since the standard
@@ -28,14 +28,14 @@ ON_LINE_MPS = 0.1
     "LongitudinalDistanceAction",
     remark="held exactly without limits, else by a critically damped spring within them and what the entity can do",
 )
-def _distance(node: Node) -> Begin:
+def _distance(node: XmlNode) -> ActionStart:
     other, freespace = node.text("entityRef"), node.flag("freespace")
     continuous = node.flag("continuous")
     wanted = _wanted(node, other)
     constraints = _constraints(node)
     system = node.choice("coordinateSystem", ("entity", "lane", "road", "trajectory"), "entity")
 
-    def begin(scene: Scene, actor: str) -> Running:
+    def begin(scene: Scene, actor: str) -> RunningAction:
         body, state = scene.body(actor, node), {"over": False}
         limits = constraints(body)
         spring = _Spring(limits)
@@ -51,7 +51,7 @@ def _distance(node: Node) -> Begin:
             else:
                 body.next_mps = spring.speed(body.speed_mps, lead.speed_mps, error, scene.dt_s)
 
-        running = Running(body, ("speed",), lambda scene: state["over"], control=control).claim()
+        running = RunningAction(body, ("speed",), lambda scene: state["over"], control=control).claim()
         if math.isinf(limits.up) and math.isinf(limits.down):  # held exactly from the first moment
             control(scene)
         return running
@@ -59,7 +59,7 @@ def _distance(node: Node) -> Begin:
     return begin
 
 
-def _wanted(node: Node, other: str) -> Callable[[Scene], float]:
+def _wanted(node: XmlNode, other: str) -> Callable[[Scene], float]:
     """The distance to keep, metres; a time gap counts at the other's speed."""
     if node.has("distance"):
         distance = node.number("distance")
@@ -68,7 +68,7 @@ def _wanted(node: Node, other: str) -> Callable[[Scene], float]:
     return lambda scene: abs(gap * scene.body(other, node).speed_mps)
 
 
-def _side(node: Node, ahead_m: float) -> int:
+def _side(node: XmlNode, ahead_m: float) -> int:
     """1 where the other is to be ahead, -1 where behind; undecided: as it is now."""
     words = {"trailingReferencedEntity": 1, "leadingReferencedEntity": -1, "any": 1 if ahead_m >= 0 else -1}
     return words[node.choice("displacement", words, "any" if node.has("displacement") else "trailingReferencedEntity")]
@@ -94,7 +94,7 @@ class _Limits(NamedTuple):
     top: float = math.inf
 
 
-def _constraints(node: Node) -> Callable[[Body], _Limits]:
+def _constraints(node: XmlNode) -> Callable[[Body], _Limits]:
     """Of the action, and no more than the entity's own performance; none at all without <DynamicConstraints>."""
     if (told := node.find("DynamicConstraints")) is None:
         return lambda body: _Limits()
@@ -134,27 +134,27 @@ class _Steady(NamedTuple):
 
 
 @PRIVATE.plays("SynchronizeAction", remark="two phases of equal acceleration, the second ending with the final speed")
-def _synchronize(node: Node) -> Begin:
+def _synchronize(node: XmlNode) -> ActionStart:
     master = node.text("masterEntityRef" if node.has("masterEntityRef") else "entityRef")
     master_there, there = position(node.need("TargetPositionMaster")), position(node.need("TargetPosition"))
     near, master_near = node.number("targetTolerance", 0.0), node.number("targetToleranceMaster", 0.0)
     final, steady = _final(node, master, there)
 
-    def begin(scene: Scene, actor: str) -> Running:
+    def begin(scene: Scene, actor: str) -> RunningAction:
         body = scene.body(actor, node)
         meeting = _Meeting(node, body, scene.body(master, node), (there, master_there), (near, master_near))
         meeting.final, meeting.steady = final, steady
         if body.timed:
             body.release("path")
         body.pace = None
-        running = Running(body, ("speed",), lambda scene: meeting.over, control=meeting.control)
+        running = RunningAction(body, ("speed",), lambda scene: meeting.over, control=meeting.control)
         return running.claim()
 
     return begin
 
 
 def _final(
-    node: Node, master: str, there: Where
+    node: XmlNode, master: str, there: PositionFunction
 ) -> tuple[Callable[[Scene], float] | None, Callable[[Scene, float], float] | None]:
     """The final speed, and how long before the target it is held, metres."""
     holder = node.find("FinalSpeed")
@@ -168,13 +168,13 @@ def _final(
     return speed, None
 
 
-def _of_master(node: Node, master: str, value: float) -> Callable[[Scene], float]:
+def _of_master(node: XmlNode, master: str, value: float) -> Callable[[Scene], float]:
     if node.tag != "RelativeSpeedToMaster":
         raise node.unsupported()
     return relative_speed(node, master, value, "speedTargetValueType")
 
 
-def _steady(node: Node, there: Where) -> Callable[[Scene, float], float]:
+def _steady(node: XmlNode, there: PositionFunction) -> Callable[[Scene, float], float]:
     if node.tag == "TargetTimeSteadyState":
         time = node.number("time" if node.has("time") else "steadyStateTime")
         return lambda scene, speed: time * speed
@@ -192,7 +192,12 @@ class _Meeting:
     steady: Callable[[Scene, float], float] | None = None
 
     def __init__(
-        self, node: Node, body: Body, master: Body, places: tuple[Where, Where], tolerances: tuple[float, float]
+        self,
+        node: XmlNode,
+        body: Body,
+        master: Body,
+        places: tuple[PositionFunction, PositionFunction],
+        tolerances: tuple[float, float],
     ) -> None:
         self._node, self._body, self._master = node, body, master
         self._places, self._tolerances = places, tolerances
@@ -254,7 +259,7 @@ def _first_phase(now: float, last: float, rest_m: float, time_s: float) -> float
     return -now / stop if stop > 1e-6 else 0.0
 
 
-def way_to(scene: Scene, body: Body, there: Pose, node: Node) -> float:
+def way_to(scene: Scene, body: Body, there: Pose, node: XmlNode) -> float:
     """Distance that an entity has still to go: on its trajectory, along the roads, else as the crow flies."""
     pose = scene.pose(body.name, node)
     if body.course is not None and body.course.fixed:
@@ -268,7 +273,7 @@ def way_to(scene: Scene, body: Body, there: Pose, node: Node) -> float:
     return math.dist(pose[:2], there[:2])
 
 
-def _nearest_m(course: Course, there: Pose) -> float:
+def _nearest_m(course: OffsetCourse, there: Pose) -> float:
     """Where along a course a place lies."""
     import numpy as np
 

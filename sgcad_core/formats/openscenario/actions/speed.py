@@ -7,28 +7,35 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sgcad_core.formats.openscenario.actions.running import PRIVATE, Begin, Running, dynamics, nested, relative_speed
+from sgcad_core.formats.openscenario.actions.running import (
+    PRIVATE,
+    ActionStart,
+    RunningAction,
+    dynamics,
+    nested,
+    relative_speed,
+)
 from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.families import Family
 from sgcad_core.formats.openscenario.playing.scene import Scene
 from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, STEEPEST, Transition
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 from sgcad_core.geometry.plane import Floats
 
-LONGITUDINAL: Family[Begin] = Family("longitudinal action")
+LONGITUDINAL: Family[ActionStart] = Family("longitudinal action")
 PRIVATE.plays("LongitudinalAction")(lambda node: nested(LONGITUDINAL, node))
 _EAGER = 1e6
 """m/s²: an entity without a limit."""
 
 
 @LONGITUDINAL.plays("SpeedAction")
-def _speed(node: Node) -> Begin:
+def _speed(node: XmlNode) -> ActionStart:
     """The speed of a transition over time; a relative target may be followed for good (`continuous`)."""
     over = dynamics(node.need("SpeedActionDynamics"))
     holder = node.need("SpeedActionTarget").only()
     target, follows = _target(holder)
 
-    def begin(scene: Scene, actor: str) -> Running:
+    def begin(scene: Scene, actor: str) -> RunningAction:
         body = scene.body(actor, node)
         last = _capped(body, target(scene))
         if body.timed:
@@ -37,9 +44,9 @@ def _speed(node: Node) -> Begin:
         span = _feasible(body, over.shape, last - first, over.seconds(first, last))
         pace = Transition(first, last, over.shape if span else "step", span, scene.t_s)
         body.pace, body.speed_mps = pace.at, pace.at(scene.t_s)
-        running = Running(body, ("speed",), lambda scene: pace.over(scene.t_s), release_when_over=False)
+        running = RunningAction(body, ("speed",), lambda scene: pace.over(scene.t_s), release_when_over=False)
         if follows:
-            running = Running(body, ("speed",), lambda scene: False, control=_keep(body, target, pace))
+            running = RunningAction(body, ("speed",), lambda scene: False, control=_keep(body, target, pace))
         return running.claim()
 
     return begin
@@ -67,7 +74,7 @@ def _capped(body: Body, speed_mps: float) -> float:
     return math.copysign(min(abs(speed_mps), body.limits.speed_mps), speed_mps)
 
 
-def _target(node: Node) -> tuple[Callable[[Scene], float], bool]:
+def _target(node: XmlNode) -> tuple[Callable[[Scene], float], bool]:
     """The speed to reach, and whether it is followed for good."""
     if node.tag == "AbsoluteTargetSpeed":
         value = node.number("value")
@@ -79,7 +86,7 @@ def _target(node: Node) -> tuple[Callable[[Scene], float], bool]:
 
 
 @LONGITUDINAL.plays("SpeedProfileAction", remark="limits of acceleration are kept; jerk is not limited")
-def _profile(node: Node) -> Begin:
+def _profile(node: XmlNode) -> ActionStart:
     """Straight pieces of speed over time: entries say how long each takes; without a time, as fast as allowed."""
     entries = [(e.number("time", -1.0), e.number("speed")) for e in node.children("SpeedProfileEntry")]
     if not 1 <= len(entries) <= 10_000:
@@ -90,7 +97,7 @@ def _profile(node: Node) -> Begin:
     up, down = (limits.limit(k) if limits else math.inf for k in ("maxAcceleration", "maxDeceleration"))
     other = node.text("entityRef", "")
 
-    def begin(scene: Scene, actor: str) -> Running:
+    def begin(scene: Scene, actor: str) -> RunningAction:
         body = scene.body(actor, node)
         base = scene.body(other, node).speed_mps if other else 0.0
         up_to, down_to = min(up, body.limits.acceleration), min(down, body.limits.deceleration)
@@ -99,7 +106,7 @@ def _profile(node: Node) -> Begin:
         body.pace = lambda t_s: float(np.interp(t_s, times, speeds))
         body.speed_mps = body.pace(scene.t_s)
         end_s = float(times[-1])
-        over = Running(body, ("speed",), lambda scene: scene.t_s >= end_s - EPSILON, release_when_over=False)
+        over = RunningAction(body, ("speed",), lambda scene: scene.t_s >= end_s - EPSILON, release_when_over=False)
         return over.claim()
 
     return begin

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from sgcad_core.formats.openscenario.actions.running import GLOBAL, Effect
+from sgcad_core.formats.openscenario.actions.running import GLOBAL, GlobalEffect
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 GLOBAL.refuses(
     "TrafficAction", remark="sources, sinks and swarms draw traffic at random", remedy="write each vehicle as an entity"
@@ -15,7 +15,7 @@ GLOBAL.refuses("SetMonitorAction", remark="monitors watch for a test bench", rem
 
 
 @GLOBAL.plays("EnvironmentAction", remark="weather, light and friction change no told motion")
-def _environment(node: Node) -> Effect:
+def _environment(node: XmlNode) -> GlobalEffect:
     found = node.either("Environment")
     time = found.find("TimeOfDay")
     if time is None:
@@ -28,7 +28,7 @@ def _environment(node: Node) -> Effect:
     return effect
 
 
-def seconds_of_day(date_time: str, blame: Node) -> float:
+def seconds_of_day(date_time: str, blame: XmlNode) -> float:
     """Seconds since midnight of an ISO 8601 date and time. Raises InvalidOutput."""
     try:
         hour, minute, second = date_time.split("T")[1][:8].split(":")
@@ -38,7 +38,7 @@ def seconds_of_day(date_time: str, blame: Node) -> float:
 
 
 @GLOBAL.plays("ParameterAction", "VariableAction")
-def _value(node: Node) -> Effect:
+def _value(node: XmlNode) -> GlobalEffect:
     """Set a value that conditions read, or add to or multiply it."""
     of_variable = node.tag == "VariableAction"
     name = node.text("variableRef" if of_variable else "parameterRef").lstrip("$")
@@ -53,7 +53,7 @@ def _value(node: Node) -> Effect:
     return effect
 
 
-def _change(node: Node) -> Callable[[str], str]:
+def _change(node: XmlNode) -> Callable[[str], str]:
     if node.tag == "SetAction":
         value = node.text("value")
         return lambda old: value
@@ -77,7 +77,7 @@ def _change(node: Node) -> Callable[[str], str]:
 @GLOBAL.plays(
     "InfrastructureAction", remark="states of signals are kept for conditions; no entity heeds them by itself"
 )
-def _infrastructure(node: Node) -> Effect:
+def _infrastructure(node: XmlNode) -> GlobalEffect:
     child = node.need("TrafficSignalAction").only()
     if child.tag != "TrafficSignalStateAction":
         raise child.unsupported("the player does not start a controller's phase", "set the state of each signal")
@@ -90,5 +90,5 @@ def _infrastructure(node: Node) -> Effect:
 
 
 @GLOBAL.notes("UserDefinedAction", remark="a command of the user's own: nothing happens")
-def _user_defined(node: Node) -> Effect:
+def _user_defined(node: XmlNode) -> GlobalEffect:
     return lambda scene: None

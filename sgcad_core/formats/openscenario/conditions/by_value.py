@@ -5,26 +5,26 @@ from __future__ import annotations
 from sgcad_core.formats.openscenario.actions.world import seconds_of_day
 from sgcad_core.formats.openscenario.conditions.rules import BY_VALUE, RULES, Test, rule, rule_of_text
 from sgcad_core.formats.openscenario.playing.scene import TRANSITIONS, Scene
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 _STATES = ("standbyState", "runningState", "completeState")
 BY_VALUE.refuses("UserDefinedValueCondition", remark="its value comes from outside", remedy="use a VariableCondition")
 
 
 @BY_VALUE.plays("SimulationTimeCondition")
-def _simulation_time(node: Node) -> Test:
+def _simulation_time(node: XmlNode) -> Test:
     holds = rule(node)
     return lambda scene: holds(scene.t_s)
 
 
 @BY_VALUE.plays("TimeOfDayCondition", remark="needs a <TimeOfDay> in an EnvironmentAction; dates do not count")
-def _time_of_day(node: Node) -> Test:
+def _time_of_day(node: XmlNode) -> Test:
     compare, clock_s = RULES[node.choice("rule", RULES)], seconds_of_day(node.text("dateTime"), node)
     return lambda scene: scene.clock_s is not None and compare(scene.clock_s + scene.t_s, clock_s)
 
 
 @BY_VALUE.plays("StoryboardElementStateCondition")
-def _element_state(node: Node) -> Test:
+def _element_state(node: XmlNode) -> Test:
     kind, ref = node.text("storyboardElementType"), node.label("storyboardElementRef")
     state = node.choice("state", (*_STATES, *TRANSITIONS))
 
@@ -41,7 +41,7 @@ def _element_state(node: Node) -> Test:
 
 
 @BY_VALUE.plays("ParameterCondition", "VariableCondition")
-def _value(node: Node) -> Test:
+def _value(node: XmlNode) -> Test:
     of_variable = node.tag == "VariableCondition"
     name, holds = node.text("variableRef" if of_variable else "parameterRef").lstrip("$"), rule_of_text(node)
 
@@ -58,12 +58,12 @@ def _value(node: Node) -> Test:
 
 
 @BY_VALUE.plays("TrafficSignalCondition", remark="states that actions and controllers' phases set")
-def _signal(node: Node) -> Test:
+def _signal(node: XmlNode) -> Test:
     name, state = node.text("name"), node.text("state")
     return lambda scene: scene.signals.get(name) == state
 
 
 @BY_VALUE.plays("TrafficSignalControllerCondition")
-def _signal_controller(node: Node) -> Test:
+def _signal_controller(node: XmlNode) -> Test:
     name, phase = node.text("trafficSignalControllerRef"), node.text("phase")
     return lambda scene: scene.signals.get(f"controller {name}") == phase

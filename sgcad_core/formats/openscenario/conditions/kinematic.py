@@ -9,28 +9,28 @@ from sgcad_core.formats.openscenario.conditions.rules import BY_ENTITY, OfEntity
 from sgcad_core.formats.openscenario.playing.body import STILL_MPS, Body
 from sgcad_core.formats.openscenario.playing.scene import Scene
 from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, angle_between
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 
 @BY_ENTITY.plays("TraveledDistanceCondition")
-def _travelled(node: Node) -> OfEntity:
+def _travelled(node: XmlNode) -> OfEntity:
     value = node.number("value")
     return lambda scene, name: scene.body(name, node).travelled_m >= value - EPSILON
 
 
 @BY_ENTITY.plays("SpeedCondition", remark="direction 'lateral' and 'vertical' are 0: wheels roll")
-def _speed(node: Node) -> OfEntity:
+def _speed(node: XmlNode) -> OfEntity:
     holds, told = rule(node), _directed(node)
     return lambda scene, name: holds(told(scene.body(name, node).speed_mps))
 
 
 @BY_ENTITY.plays("RelativeSpeedCondition")
-def _relative_speed(node: Node) -> OfEntity:
+def _relative_speed(node: XmlNode) -> OfEntity:
     holds, other, told = rule(node), node.text("entityRef"), _directed(node)
     return lambda scene, name: holds(told(scene.body(name, node).speed_mps - scene.body(other, node).speed_mps))
 
 
-def _directed(node: Node) -> Callable[[float], float]:
+def _directed(node: XmlNode) -> Callable[[float], float]:
     known = ("longitudinal", "lateral", "vertical", "total")
     return (
         (lambda value: value)
@@ -40,7 +40,7 @@ def _directed(node: Node) -> Callable[[float], float]:
 
 
 @BY_ENTITY.plays("AccelerationCondition")
-def _acceleration(node: Node) -> OfEntity:
+def _acceleration(node: XmlNode) -> OfEntity:
     holds = rule(node)
     direction = node.choice("direction", ("longitudinal", "lateral", "vertical", "total"), "total")
 
@@ -52,7 +52,7 @@ def _acceleration(node: Node) -> OfEntity:
     return test
 
 
-def _lasting(node: Node, state: Callable[[Scene, Body], bool]) -> OfEntity:
+def _lasting(node: XmlNode, state: Callable[[Scene, Body], bool]) -> OfEntity:
     """A state that must have lasted for `duration` seconds, counted in steps."""
     duration, since = node.number("duration"), dict[str, int]()
 
@@ -66,22 +66,22 @@ def _lasting(node: Node, state: Callable[[Scene, Body], bool]) -> OfEntity:
 
 
 @BY_ENTITY.plays("StandStillCondition")
-def _stand_still(node: Node) -> OfEntity:
+def _stand_still(node: XmlNode) -> OfEntity:
     return _lasting(node, lambda scene, body: abs(body.speed_mps) < STILL_MPS)
 
 
 @BY_ENTITY.plays("EndOfRoadCondition")
-def _end_of_road(node: Node) -> OfEntity:
+def _end_of_road(node: XmlNode) -> OfEntity:
     return _lasting(node, lambda scene, body: body.at_end)
 
 
 @BY_ENTITY.plays("OffroadCondition", remark="by the entity's origin; every lane but those of type none is road")
-def _offroad(node: Node) -> OfEntity:
+def _offroad(node: XmlNode) -> OfEntity:
     return _lasting(node, lambda scene, body: not scene.road_map(node).on_road(scene.pose(body.name, node)))
 
 
 @BY_ENTITY.plays("AngleCondition", remark="headings; pitch and roll are 0")
-def _angle(node: Node) -> OfEntity:
+def _angle(node: XmlNode) -> OfEntity:
     angle, tolerance, reference = _angles(node)
 
     def test(scene: Scene, name: str) -> bool:
@@ -98,7 +98,7 @@ def _angle(node: Node) -> OfEntity:
 
 
 @BY_ENTITY.plays("RelativeAngleCondition", remark="headings; pitch and roll are 0")
-def _relative_angle(node: Node) -> OfEntity:
+def _relative_angle(node: XmlNode) -> OfEntity:
     angle, tolerance, _ = _angles(node)
     other = node.text("entityRef")
 
@@ -109,7 +109,7 @@ def _relative_angle(node: Node) -> OfEntity:
     return test
 
 
-def _angles(node: Node) -> tuple[float, float, str]:
+def _angles(node: XmlNode) -> tuple[float, float, str]:
     if node.choice("angleType", ("heading", "pitch", "roll")) != "heading":
         raise node.unsupported("played motion is plane: pitch and roll are not known")
     system = node.choice("coordinateSystem", ("entity", "lane", "road", "trajectory", "world"), "entity")

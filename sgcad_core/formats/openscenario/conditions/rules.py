@@ -8,7 +8,7 @@ from collections.abc import Callable
 from sgcad_core.formats.openscenario.playing.families import Family
 from sgcad_core.formats.openscenario.playing.scene import Scene
 from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 Test = Callable[[Scene], bool]
 OfEntity = Callable[[Scene, str], bool]
@@ -25,13 +25,13 @@ RULES: dict[str, Callable[[float, float], bool]] = {
 }
 
 
-def rule(node: Node) -> Callable[[float], bool]:
+def rule(node: XmlNode) -> Callable[[float], bool]:
     """A number's comparison with the condition's `value`."""
     compare, value = RULES[node.choice("rule", RULES)], node.number("value")
     return lambda found: compare(found, value)
 
 
-def rule_of_text(node: Node) -> Callable[[str], bool]:
+def rule_of_text(node: XmlNode) -> Callable[[str], bool]:
     """A value's comparison: as numbers where both are, else as words, which are equal or not."""
     name, value = node.choice("rule", RULES), node.text("value")
 

@@ -5,19 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.conditions.rules import BY_ENTITY, OfEntity, rule
 from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.distances import KINDS, STRAIGHT, apart, box_of, system_of
 from sgcad_core.formats.openscenario.playing.positions import position
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, Pose
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 from sgcad_core.geometry.plane import overlap
 
 _TYPES = {"vehicle": "Vehicle", "pedestrian": "Pedestrian", "miscellaneous": "MiscObject", "miscObject": "MiscObject"}
 
 
-def _other(node: Node, holder: Node) -> Callable[[Scene], Body | Pose]:
+def _other(node: XmlNode, holder: XmlNode) -> Callable[[Scene], Body | Pose]:
     """The entity or the place that a condition measures to."""
     if ref := holder.find("EntityRef"):
         name = ref.text("entityRef")
@@ -29,7 +30,7 @@ def _other(node: Node, holder: Node) -> Callable[[Scene], Body | Pose]:
     return lambda scene: scene.body(name, node)
 
 
-def _how(node: Node, kind: str) -> tuple[str, str, bool]:
+def _how(node: XmlNode, kind: str) -> tuple[str, str, bool]:
     """Kind, coordinate system and free space of a distance."""
     system = system_of(node)
     default = "longitudinal" if node.has("alongRoute") and system == "road" else kind
@@ -37,11 +38,11 @@ def _how(node: Node, kind: str) -> tuple[str, str, bool]:
 
 
 BESIDE_M = 1e-6
-"""Who is not farther ahead than this is beside."""
+"""An entity that is not farther ahead than this counts as beside."""
 
 
 @BY_ENTITY.plays("ReachPositionCondition")
-def _reach(node: Node) -> OfEntity:
+def _reach(node: XmlNode) -> OfEntity:
     target, tolerance = position(node.need("Position")), node.number("tolerance")
 
     def test(scene: Scene, name: str) -> bool:
@@ -51,13 +52,13 @@ def _reach(node: Node) -> OfEntity:
 
 
 @BY_ENTITY.plays("DistanceCondition", "RelativeDistanceCondition")
-def _distance(node: Node) -> OfEntity:
+def _distance(node: XmlNode) -> OfEntity:
     holds, other, how = rule(node), _other(node, node), _how(node, "euclidianDistance")
     return lambda scene, name: holds(abs(apart(scene, scene.body(name, node), other(scene), how, node)))
 
 
 @BY_ENTITY.plays("TimeHeadwayCondition", remark="undefined behind the other, beside it, and at a stand")
-def _headway(node: Node) -> OfEntity:
+def _headway(node: XmlNode) -> OfEntity:
     holds, other, how = rule(node), _other(node, node), _how(node, "euclidianDistance")
 
     def test(scene: Scene, name: str) -> bool:
@@ -69,7 +70,7 @@ def _headway(node: Node) -> OfEntity:
 
 
 @BY_ENTITY.plays("TimeToCollisionCondition", remark="undefined while they part")
-def _time_to_collision(node: Node) -> OfEntity:
+def _time_to_collision(node: XmlNode) -> OfEntity:
     """Distance by closing speed: the own velocity along the other's, less the other's speed."""
     holder = node.find("TimeToCollisionConditionTarget") or node
     holds, other, how = rule(node), _other(node, holder), _how(node, "euclidianDistance")
@@ -84,7 +85,7 @@ def _time_to_collision(node: Node) -> OfEntity:
     return test
 
 
-def _ahead(scene: Scene, body: Body, other: Body | Pose, how: tuple[str, str, bool], node: Node) -> float:
+def _ahead(scene: Scene, body: Body, other: Body | Pose, how: tuple[str, str, bool], node: XmlNode) -> float:
     """A distance that is negative where the other lies behind, or beside."""
     gap = apart(scene, body, other, how, node)
     if how[0] not in STRAIGHT:
@@ -103,7 +104,7 @@ def _closing(body: Body, other: Body | Pose) -> float:
 
 
 @BY_ENTITY.plays("CollisionCondition")
-def _collision(node: Node) -> OfEntity:
+def _collision(node: XmlNode) -> OfEntity:
     by_type = node.find("ByType")
     if by_type:
         kind = _TYPES[by_type.choice("type", _TYPES)]
@@ -114,7 +115,7 @@ def _collision(node: Node) -> OfEntity:
     return lambda scene, name: any(_touch(scene, name, member, node) for member in scene.members(other, node))
 
 
-def _touch(scene: Scene, name: str, other: str, node: Node) -> bool:
+def _touch(scene: Scene, name: str, other: str, node: XmlNode) -> bool:
     first, second = scene.body(name, node), scene.body(other, node)
     if first is second or not (first.present and second.present) or first.tow is second or second.tow is first:
         return False
@@ -127,7 +128,7 @@ def _touch(scene: Scene, name: str, other: str, node: Node) -> bool:
 
 
 @BY_ENTITY.plays("RelativeClearanceCondition", remark="by origins, or by boxes in free space, in the lanes named")
-def _clearance(node: Node) -> OfEntity:
+def _clearance(node: XmlNode) -> OfEntity:
     """Whether the lanes beside or around an entity are free of others over a stretch ahead and behind."""
     ahead, behind = node.number("distanceForward", 0.0), node.number("distanceBackward", 0.0)
     free, opposite = node.flag("freeSpace"), node.flag("oppositeLanes")

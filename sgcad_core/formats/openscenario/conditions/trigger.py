@@ -11,7 +11,7 @@ from collections.abc import Callable
 from sgcad_core.formats.openscenario.conditions.rules import BY_ENTITY, BY_VALUE, Test
 from sgcad_core.formats.openscenario.playing.scene import Scene
 from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 _EDGES: dict[str, Callable[[bool, bool], bool]] = {
     "rising": lambda before, now: now and not before,
@@ -23,12 +23,12 @@ _EDGES: dict[str, Callable[[bool, bool], bool]] = {
 class Trigger:
     """Condition groups, any of which fires when all of its conditions do. `missing`: what no trigger means."""
 
-    def __init__(self, node: Node | None, missing: bool) -> None:
+    def __init__(self, node: XmlNode | None, missing: bool) -> None:
         groups = node.children("ConditionGroup") if node else []
         self._groups = [[_Condition(c) for c in g.children("Condition")] for g in groups]
         self._missing = missing
         self.entities: tuple[str, ...] = ()
-        """Who made it fire, where conditions by entity did."""
+        """Entities whose conditions made it fire."""
 
     def __bool__(self) -> bool:
         """Whether there is any condition at all."""
@@ -55,7 +55,7 @@ class Trigger:
 class _Condition:
     """One condition with its edge, delay and history."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: XmlNode) -> None:
         self.edge = node.choice("conditionEdge", ("none", *_EDGES), "none")
         self.delay_s = node.number("delay", 0.0)
         if not 0 <= self.delay_s <= 3600:
@@ -85,7 +85,7 @@ class _Condition:
         self.fired = [step for step in self.fired if step >= due]
         return due in self.fired
 
-    def _test(self, node: Node) -> Test:
+    def _test(self, node: XmlNode) -> Test:
         children = node.children("ByValueCondition", "ByEntityCondition")
         if len(children) != 1:
             raise node.fault("needs one <ByValueCondition> or <ByEntityCondition>", str(len(children)))
@@ -93,7 +93,7 @@ class _Condition:
             return self._by_entity(children[0])
         return BY_VALUE.compile(children[0].only())
 
-    def _by_entity(self, node: Node) -> Test:
+    def _by_entity(self, node: XmlNode) -> Test:
         triggering = node.need("TriggeringEntities")
         names = [ref.text("entityRef") for ref in triggering.children("EntityRef")]
         if not names:
@@ -110,7 +110,7 @@ class _Condition:
         return tested
 
 
-def _time_waited_for(node: Node) -> float | None:
+def _time_waited_for(node: XmlNode) -> float | None:
     for time in (c.find("SimulationTimeCondition") for c in node.children("ByValueCondition")):
         if time and time.text("rule") in ("greaterThan", "greaterOrEqual"):
             return time.number("value")

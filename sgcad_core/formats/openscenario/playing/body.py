@@ -9,8 +9,9 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from sgcad_core.formats.openscenario.playing.offset_course import Course
-from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, BoxShape, Pose, Timed
+from sgcad_core.formats.opendrive.geometry import Pose
+from sgcad_core.formats.openscenario.playing.offset_course import OffsetCourse
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, BoxShape, TimedMotion
 from sgcad_core.formats.openscenario.roads.way import LanePlace, Route
 
 STILL_MPS = 1e-3
@@ -18,7 +19,7 @@ STILL_MPS = 1e-3
 
 @dataclass(frozen=True)
 class Limits:
-    """What an entity can do, m/s and m/s²."""
+    """Performance limits of an entity, m/s and m/s²."""
 
     speed_mps: float = math.inf
     acceleration: float = math.inf
@@ -41,11 +42,11 @@ class Body:
     pose: Pose | None = None
     speed_mps: float = 0.0
     roll_rad: float = 0.0
-    """About its long axis, positive to the right: told by timed vertices, and kept behind them."""
+    """Roll about the long axis, positive to the right: that of timed vertices, kept after the last."""
     travelled_m: float = 0.0
     present: bool = True
-    timed: Timed | None = None
-    course: Course | None = None
+    timed: TimedMotion | None = None
+    course: OffsetCourse | None = None
     pace: Callable[[float], float] | None = None
     """Speed at a time, while something sets it."""
     next_mps: float | None = None
@@ -61,7 +62,7 @@ class Body:
     """Along its heading and to its left, m/s²."""
     velocity: tuple[float, float] = (0.0, 0.0)
     owners: dict[str, object] = field(default_factory=dict)
-    """Who controls "path" and "speed": the newest action wins, older ones are over."""
+    """The action that controls "path" and "speed": the newest one; older ones have ended."""
 
     def put(self, pose: Pose, place: LanePlace | None = None) -> None:
         """Teleport; the way does not count as travelled."""
@@ -76,7 +77,7 @@ class Body:
         else:
             self.pace = self.next_mps = None
 
-    def advance(self, step: int, dt_s: float, course_for: Callable[[Body, bool], Course]) -> None:
+    def advance(self, step: int, dt_s: float, course_for: Callable[[Body, bool], OffsetCourse]) -> None:
         """Move to a step of the clock."""
         if self.pose is None or not self.present:
             return
@@ -93,7 +94,7 @@ class Body:
         ax, ay = ((now - then) / dt_s for now, then in zip(self.velocity, velocity, strict=True))
         self.acceleration = ax * c + ay * s, ay * c - ax * s
 
-    def _cruise(self, t_s: float, dt_s: float, course_for: Callable[[Body, bool], Course]) -> Pose:
+    def _cruise(self, t_s: float, dt_s: float, course_for: Callable[[Body, bool], OffsetCourse]) -> Pose:
         assert self.pose is not None  # noqa: S101 - as above
         before = self.speed_mps
         if self.next_mps is not None:
@@ -112,7 +113,7 @@ class Body:
         self.place = found[0] if found else None
         return self._led(pose) if course.fixed else pose
 
-    def _course(self, distance_m: float, course_for: Callable[[Body, bool], Course]) -> Course:
+    def _course(self, distance_m: float, course_for: Callable[[Body, bool], OffsetCourse]) -> OffsetCourse:
         """The course it is on; a new one in the other sense, and where a long way was cut."""
         course, backwards = self.course, distance_m < 0
         if course is None:
@@ -125,7 +126,7 @@ class Body:
         return course
 
     @staticmethod
-    def _used_up(course: Course, distance_m: float) -> bool:
+    def _used_up(course: OffsetCourse, distance_m: float) -> bool:
         return course.way is not None and not course.way.dead_end and course.rest_m < abs(distance_m) + 1.0
 
     def seated(self, pose: Pose) -> Pose:
@@ -165,7 +166,7 @@ class Body:
         return self.timed.center_speed(step, self.box) if self.timed else abs(self.speed_mps)
 
 
-def draw(bodies: Mapping[str, Body], anew: bool = False) -> None:
+def place_trailers(bodies: Mapping[str, Body], anew: bool = False) -> None:
     """Move trailers behind what pulls them, from the front of each train on; `anew`: in line, wherever they were."""
     waiting = [body for body in bodies.values() if body.tow is not None]
     while waiting:

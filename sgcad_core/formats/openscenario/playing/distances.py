@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import math
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.playing.timed_motion import BoxShape, Pose
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.playing.timed_motion import BoxShape
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 from sgcad_core.geometry.distances import box_distance
 from sgcad_core.geometry.plane import Box
 
@@ -20,7 +21,7 @@ SYSTEMS = ("entity", "lane", "road", "trajectory")
 _POINT = BoxShape(0.0, 0.0)
 
 
-def system_of(node: Node) -> str:
+def system_of(node: XmlNode) -> str:
     """The coordinate system of a condition; up to version 1.0 `alongRoute` says it."""
     default = "road" if node.has("alongRoute") and node.flag("alongRoute") else "entity"
     return node.choice("coordinateSystem", SYSTEMS, default)
@@ -31,12 +32,12 @@ def box_of(body: Body) -> Box:
     return Box(*body.center(), body.box.length_m, body.box.width_m)
 
 
-def ahead_of(scene: Scene, body: Body, other: Body, system: str, freespace: bool, node: Node) -> float:
+def ahead_of(scene: Scene, body: Body, other: Body, system: str, freespace: bool, node: XmlNode) -> float:
     """How far another entity is ahead of a body; infinite where no road leads there."""
     return apart(scene, body, other, ("longitudinal", system, freespace), node)
 
 
-def apart(scene: Scene, body: Body, other: Body | Pose, how: tuple[str, str, bool], node: Node) -> float:
+def apart(scene: Scene, body: Body, other: Body | Pose, how: tuple[str, str, bool], node: XmlNode) -> float:
     """Distance by kind, coordinate system and whether from box to box; infinite where no road leads there."""
     kind, system, freespace = how
     scene.pose(body.name, node)
@@ -78,7 +79,7 @@ def _reach(box: BoxShape, pose: Pose, axis_rad: float) -> float:
     return box.length_m / 2 * abs(math.cos(turn)) + box.width_m / 2 * abs(math.sin(turn))
 
 
-def _along_road(scene: Scene, body: Body, other: Body | Pose, kind: str, freespace: bool, node: Node) -> float:
+def _along_road(scene: Scene, body: Body, other: Body | Pose, kind: str, freespace: bool, node: XmlNode) -> float:
     """Along the roads between the lanes that both are in."""
     roads = scene.road_map(node)
     first = scene.lane_place(body)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sgcad_core.formats.openscenario.playing.body import Body, Limits
 from sgcad_core.formats.openscenario.playing.timed_motion import BoxShape
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 MAX_ENTITIES = 200
 MAX_TRAILERS = 10
@@ -14,7 +14,7 @@ KINDS = ("Vehicle", "Pedestrian", "MiscObject")
 _BY_TYPE = {"vehicle": "Vehicle", "pedestrian": "Pedestrian", "miscellaneous": "MiscObject", "miscObject": "MiscObject"}
 
 
-def bodies_of(root: Node) -> dict[str, Body]:
+def bodies_of(root: XmlNode) -> dict[str, Body]:
     """Bodies by entity name in file order. Raises InvalidOutput."""
     holder = root.need("Entities")
     objects = holder.children("ScenarioObject")
@@ -32,7 +32,7 @@ def bodies_of(root: Node) -> dict[str, Body]:
     return bodies
 
 
-def selections_of(root: Node, bodies: dict[str, Body]) -> dict[str, tuple[str, ...]]:
+def selections_of(root: XmlNode, bodies: dict[str, Body]) -> dict[str, tuple[str, ...]]:
     """Members of each <EntitySelection>."""
     found: dict[str, tuple[str, ...]] = {}
     for node in root.need("Entities").children("EntitySelection"):
@@ -46,11 +46,11 @@ def selections_of(root: Node, bodies: dict[str, Body]) -> dict[str, tuple[str, .
     return found
 
 
-def _body(node: Node, name: str) -> Body:
+def _body(node: XmlNode, name: str) -> Body:
     return _of(entity_node(node), name)
 
 
-def _of(found: Node, name: str) -> Body:
+def _of(found: XmlNode, name: str) -> Body:
     box = _box(found)
     made = Body(name, box, found.tag, found.text("vehicleCategory", ""))
     if performance := found.find("Performance"):
@@ -64,7 +64,7 @@ def _of(found: Node, name: str) -> Body:
     return made
 
 
-def entity_node(node: Node) -> Node:
+def entity_node(node: XmlNode) -> XmlNode:
     """The <Vehicle>, <Pedestrian> or <MiscObject> of a scenario object, from its catalog where it refers to one."""
     child = node.find(*KINDS, "CatalogReference")
     if child is None:
@@ -72,14 +72,14 @@ def entity_node(node: Node) -> Node:
     return child.followed(*KINDS)
 
 
-def _box(found: Node) -> BoxShape:
+def _box(found: XmlNode) -> BoxShape:
     box = found.need("BoundingBox")
     size, center = box.need("Dimensions"), box.need("Center")
     ahead = center.number("x") - _rear_axle_m(found)
     return BoxShape(_side(size, "length"), _side(size, "width"), ahead, center.number("y"))
 
 
-def _rear_axle_m(found: Node) -> float:
+def _rear_axle_m(found: XmlNode) -> float:
     """Where a vehicle's rear axle stands in its own coordinates: 0, since it is their origin.
 
     A file that says otherwise contradicts itself; like other players this one believes that poses are the rear
@@ -90,24 +90,24 @@ def _rear_axle_m(found: Node) -> float:
     return rear.number("positionX") if rear else 0.0
 
 
-def _side(size: Node, name: str) -> float:
+def _side(size: XmlNode, name: str) -> float:
     if size.number(name) == 0 and not size.book.strict:
         size.note(f"attribute {name!r} is 0", remedy=f"played with {LEAST_M:g} m")
         return LEAST_M
     return size.positive(name)
 
 
-def _dx(found: Node, tag: str) -> float | None:
+def _dx(found: XmlNode, tag: str) -> float | None:
     return node.number("dx", 0.0) if (node := found.find(tag)) else None
 
 
-def _hitch_on(objects: list[Node], bodies: dict[str, Body]) -> None:
+def _hitch_on(objects: list[XmlNode], bodies: dict[str, Body]) -> None:
     """Trailers that vehicles have from the start."""
     for node in objects:
         _hitched(entity_node(node), bodies[node.text("name")], bodies)
 
 
-def _hitched(vehicle: Node, body: Body, bodies: dict[str, Body], depth: int = 0) -> None:
+def _hitched(vehicle: XmlNode, body: Body, bodies: dict[str, Body], depth: int = 0) -> None:
     trailer = vehicle.find("Trailer")
     if trailer is None:
         return

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Generic, Literal, NamedTuple, TypeVar
 
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 T = TypeVar("T")
 Status = Literal["played", "noted", "refused"]
@@ -27,29 +27,29 @@ class Family(Generic[T]):
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self._known: dict[str, Callable[[Node], T]] = {}
+        self._known: dict[str, Callable[[XmlNode], T]] = {}
         self.entries: dict[str, Entry] = {}
 
-    def plays(self, *tags: str, remark: str = "") -> Callable[[Callable[[Node], T]], Callable[[Node], T]]:
+    def plays(self, *tags: str, remark: str = "") -> Callable[[Callable[[XmlNode], T]], Callable[[XmlNode], T]]:
         """Decorator: this function compiles these elements."""
         return self._add("played", tags, remark)
 
-    def notes(self, *tags: str, remark: str) -> Callable[[Callable[[Node], T]], Callable[[Node], T]]:
+    def notes(self, *tags: str, remark: str) -> Callable[[Callable[[XmlNode], T]], Callable[[XmlNode], T]]:
         """Decorator: these elements are accepted, and `remark` stands beside the result."""
         return self._add("noted", tags, remark)
 
     def refuses(self, *tags: str, remark: str, remedy: str = "use timed world polylines") -> None:
         """These elements are refused by name: `remark` says why, `remedy` what would help."""
 
-        def refuse(node: Node) -> T:
+        def refuse(node: XmlNode) -> T:
             raise node.unsupported(f"the player does not support <{node.tag}>: {remark}", remedy)
 
         self._add("refused", tags, remark)(refuse)
 
     def _add(
         self, status: Status, tags: tuple[str, ...], remark: str
-    ) -> Callable[[Callable[[Node], T]], Callable[[Node], T]]:
-        def added(function: Callable[[Node], T]) -> Callable[[Node], T]:
+    ) -> Callable[[Callable[[XmlNode], T]], Callable[[XmlNode], T]]:
+        def added(function: Callable[[XmlNode], T]) -> Callable[[XmlNode], T]:
             for tag in tags:
                 self._known[tag] = function
                 self.entries[tag] = Entry(tag, status, remark)
@@ -60,7 +60,7 @@ class Family(Generic[T]):
     def __contains__(self, tag: str) -> bool:
         return tag in self._known
 
-    def compile(self, node: Node) -> T:
+    def compile(self, node: XmlNode) -> T:
         """Compile an element. Raises Unsupported for one that the family does not know or refuses."""
         if node.tag not in self._known:
             raise node.unsupported(f"the player does not support <{node.tag}> as {self.name}")

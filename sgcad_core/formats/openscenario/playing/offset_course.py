@@ -11,7 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, Pose, Transition
+from sgcad_core.formats.opendrive.geometry import Pose
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, Transition
 from sgcad_core.formats.openscenario.roads.way import LanePlace, Way
 from sgcad_core.geometry.plane import Floats, arc_lengths
 
@@ -20,7 +21,7 @@ _BEND_M = 2.0
 """Curvature is measured over twice this length: shorter ones see the corners of the polyline."""
 
 
-class Course:
+class OffsetCourse:
     """Points (n, 2), n >= 2, no two alike in a row; `shift`: metres to the left, over time or over distance."""
 
     def __init__(
@@ -46,7 +47,7 @@ class Course:
         self.offset_m = self.shift.first
         self.passed_m = 0.0
 
-    def take_over(self, before: Course) -> None:
+    def take_over(self, before: OffsetCourse) -> None:
         """Go on with another course's shift."""
         self.shift, self.by_time, self.passed_m = before.shift, before.by_time, before.passed_m
         self._aside_counts = before._aside_counts
@@ -123,11 +124,11 @@ class Course:
         return smooth
 
 
-def straight(pose: Pose) -> Course:
+def straight(pose: Pose) -> OffsetCourse:
     """The course straight ahead."""
     ahead = np.array([math.cos(pose.heading_rad), math.sin(pose.heading_rad)]) * _BEYOND_M
     here = np.array(pose[:2])
-    return Course(np.array([here, here + ahead]))
+    return OffsetCourse(np.array([here, here + ahead]))
 
 
 def beside(points: Floats, pose: Pose) -> tuple[float, float]:

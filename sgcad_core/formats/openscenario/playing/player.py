@@ -1,4 +1,4 @@
-"""Our own OpenSCENARIO player: scenario files to trajectories of box centers.
+"""The OpenSCENARIO player: scenario files to trajectories of box centers.
 
 What it plays, accepts with a note and refuses by name stands in docs/conformance.md. The clock counts steps
 (t = k dt), so that nothing drifts. A row tells poses as they are before what is triggered at that step acts, and
@@ -14,15 +14,16 @@ from functools import lru_cache
 import numpy as np
 
 from sgcad_core.case.records import Finding, Floats, Trajectory
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.actions.running import control
-from sgcad_core.formats.openscenario.playing.body import Body, draw
+from sgcad_core.formats.openscenario.playing.body import Body, place_trailers
 from sgcad_core.formats.openscenario.playing.entity import bodies_of, selections_of
 from sgcad_core.formats.openscenario.playing.scene import Scene
 from sgcad_core.formats.openscenario.playing.signal_phases import SignalPlan
 from sgcad_core.formats.openscenario.playing.story import Storyboard
 from sgcad_core.formats.openscenario.playing.storyboard_init import initialize
-from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, MAX_S, BoxShape, Pose
-from sgcad_core.formats.openscenario.reading.elements import Node, read_root
+from sgcad_core.formats.openscenario.playing.timed_motion import EPSILON, MAX_S, BoxShape
+from sgcad_core.formats.openscenario.reading.elements import XmlNode, read_root
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads, roads_of
 
 DT_S = 0.05
@@ -52,11 +53,11 @@ def play(xosc: str, xodr: str | None = None, dt_s: float = DT_S) -> tuple[Trajec
     files are remembered (validators and simulators play the same one), so the arrays are read-only. Raises
     InvalidOutput; Unsupported, which is one, for what the player lacks.
     """
-    return perform(read_root(xosc), None if xodr is None else roads_of(xodr), dt_s).trajectories
+    return play_scenario(read_root(xosc), None if xodr is None else roads_of(xodr), dt_s).trajectories
 
 
-def perform(
-    root: Node, roads: XodrRoads | None, dt_s: float = DT_S, until_s: float | None = None, no_map: str = ""
+def play_scenario(
+    root: XmlNode, roads: XodrRoads | None, dt_s: float = DT_S, until_s: float | None = None, no_map: str = ""
 ) -> Played:
     """Play a file that was read. `until_s`: where one that does not end by itself is cut, with a note; `no_map`: why
     there are no roads. Raises InvalidOutput, Unsupported."""
@@ -82,14 +83,14 @@ def entity_boxes(xosc: str) -> Mapping[str, BoxShape]:
     return {name: body.box for name, body in bodies_of(read_root(xosc)).items()}
 
 
-def _variables(root: Node) -> dict[str, str]:
+def _variables(root: XmlNode) -> dict[str, str]:
     declared = root.find("VariableDeclarations")
     entries = declared.children("VariableDeclaration") if declared else []
     return {entry.text("name"): entry.text("value") for entry in entries}
 
 
 def _run(
-    story: Storyboard, scene: Scene, blame: Node, signals: SignalPlan, until_s: float | None
+    story: Storyboard, scene: Scene, blame: XmlNode, signals: SignalPlan, until_s: float | None
 ) -> tuple[Rows, dict[str, list[int]]]:
     """Rows of x, y, heading, speed and roll of every body at every step, and the steps at which it is there."""
     rows: Rows = {name: [] for name in scene.bodies}
@@ -115,11 +116,11 @@ def _run(
 
 
 def _poses(scene: Scene) -> dict[str, Pose]:
-    """Box centers of who is there."""
+    """Box centers of the present entities."""
     return {name: body.center() for name, body in scene.bodies.items() if body.present and body.pose is not None}
 
 
-def _steps(scene: Scene, blame: Node, until_s: float | None) -> Iterator[int]:
+def _steps(scene: Scene, blame: XmlNode, until_s: float | None) -> Iterator[int]:
     """The clock, as long as a scenario may last and as much as it may cost."""
     weight = len(scene.bodies) + sum(1 for _ in blame.element.iter("Condition"))
     for step in range(int((until_s or MAX_S) / scene.dt_s) + 1):
@@ -141,7 +142,7 @@ def _advance(scene: Scene, signals: SignalPlan, step: int) -> None:
     for body in scene.bodies.values():
         if body.tow is None:
             body.advance(step, scene.dt_s, scene.course_for)
-    draw(scene.bodies)
+    place_trailers(scene.bodies)
 
 
 def _filled(rows: Floats, seen: list[int]) -> Floats:

@@ -6,69 +6,21 @@ Knows no XML beyond the node that is blamed for a fault.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Protocol
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.body import Body
-from sgcad_core.formats.openscenario.playing.offset_course import Course, beside, straight
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose, Transition
-from sgcad_core.formats.openscenario.reading.elements import Node
-from sgcad_core.formats.openscenario.roads.way import LanePlace, Route, Way
+from sgcad_core.formats.openscenario.playing.offset_course import OffsetCourse, beside, straight
+from sgcad_core.formats.openscenario.playing.timed_motion import Transition
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
+from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
+from sgcad_core.formats.openscenario.roads.way import LanePlace, Route
 
 TRANSITIONS = ("startTransition", "endTransition", "stopTransition", "skipTransition")
 
 
-class Apart(Protocol):
-    """How far a place lies from another along the roads."""
-
-    @property
-    def ahead_m(self) -> float:
-        """Ahead, metres; behind: negative."""
-
-    @property
-    def left_m(self) -> float:
-        """To the left, metres."""
-
-
-class Roads(Protocol):
-    """What the player asks of a road network. Faults are ValueErrors that say what there is instead."""
-
-    def road_pose(self, road: str, s_m: float, t_m: float) -> Pose:
-        """Pose on a road; heading along its reference line."""
-
-    def lane_pose(self, road: str, lane: int, s_m: float, offset_m: float) -> Pose:
-        """Pose in a lane; heading in its driving direction, `offset_m` to the left of the reference direction."""
-
-    def place_at(self, road: str, s_m: float, t_m: float) -> LanePlace:
-        """Road coordinates as a place in the lane that holds them."""
-
-    def t_of(self, place: LanePlace) -> float:
-        """A lane place's t on its road, metres."""
-
-    def beyond(self, road: str, s_m: float) -> float:
-        """How far s lies behind a road's end (before its start: negative), metres."""
-
-    def sense(self, place: LanePlace, heading_rad: float) -> int:
-        """1 where a heading leads along s there, -1 where against it."""
-
-    def nearest(self, pose: Pose) -> LanePlace | None:
-        """The lane one drives in there, if any."""
-
-    def on_road(self, pose: Pose) -> bool:
-        """Whether a point lies on a lane of any kind but "none"."""
-
-    def drive(self, place: LanePlace, sense: int, route: Route | None = None) -> Way:
-        """The lane center ahead of a place in a sense of driving, over its successors."""
-
-    def route(self, places: Sequence[LanePlace], sense: int | None = None) -> Route:
-        """Shortest roads over places in order."""
-
-    def apart(self, first: LanePlace, sense: int, second: LanePlace) -> Apart | None:
-        """Where the second place lies as seen along the roads from the first; None where no road leads there."""
-
-
-class Stage:
+class ElementState:
     """One storyboard element while it is played: its state and when its transitions happened."""
 
     def __init__(self, kind: str, path: str) -> None:
@@ -88,9 +40,9 @@ class Scene:
 
     dt_s: float
     bodies: dict[str, Body]
-    roads: Roads | None = None
+    roads: XodrRoads | None = None
     step: int = 0
-    stages: list[Stage] = field(default_factory=list)
+    stages: list[ElementState] = field(default_factory=list)
     parameters: dict[str, str] = field(default_factory=dict)
     variables: dict[str, str] = field(default_factory=dict)
     """Values that conditions read and actions set, by name."""
@@ -107,23 +59,23 @@ class Scene:
         """Simulation time, seconds."""
         return self.step * self.dt_s
 
-    def body(self, name: str, blame: Node) -> Body:
+    def body(self, name: str, blame: XmlNode) -> Body:
         """An entity. Raises InvalidOutput naming what there is."""
         if name not in self.bodies:
             raise blame.fault("unknown entity", name, f"entities: {', '.join(self.bodies) or 'none'}")
         return self.bodies[name]
 
-    def members(self, name: str, blame: Node) -> tuple[str, ...]:
+    def members(self, name: str, blame: XmlNode) -> tuple[str, ...]:
         """The entities that a name stands for: one, or those of a selection."""
         return self.selections.get(name) or (self.body(name, blame).name,)
 
-    def pose(self, name: str, blame: Node) -> Pose:
+    def pose(self, name: str, blame: XmlNode) -> Pose:
         """Where an entity is. Raises InvalidOutput before it was placed."""
         if (pose := self.body(name, blame).pose) is None:
             raise blame.fault("entity has no place yet", name, "teleport it in Init before it is referred to")
         return pose
 
-    def road_map(self, blame: Node) -> Roads:
+    def road_map(self, blame: XmlNode) -> XodrRoads:
         """The road network. Raises InvalidOutput where none was given."""
         if self.roads is None:
             raise blame.fault(self.no_map, remedy="use WorldPosition, or give the map")
@@ -141,7 +93,7 @@ class Scene:
         assert body.pose is not None  # noqa: S101 - as above
         return self.roads.sense(place, body.pose.heading_rad)
 
-    def course_for(self, body: Body, backwards: bool = False) -> Course:
+    def course_for(self, body: Body, backwards: bool = False) -> OffsetCourse:
         """The lane ahead of an entity (behind it: `backwards`), keeping the offset; straight on where there is none."""
         assert body.pose is not None  # noqa: S101 - only placed entities move
         x, y, h = body.pose
@@ -154,15 +106,15 @@ class Scene:
         course.reverse = backwards
         return course
 
-    def lane_course(self, place: LanePlace, pose: Pose, route: Route | None = None) -> Course | None:
+    def lane_course(self, place: LanePlace, pose: Pose, route: Route | None = None) -> OffsetCourse | None:
         """The way ahead in a lane, from a pose beside its center; None at a dead end."""
         assert self.roads is not None  # noqa: S101 - a place is known, so there are roads
         way = self.roads.drive(place, self.roads.sense(place, pose.heading_rad), route)
         if len(way.points) < 2:
             return None
         ahead, side = beside(way.points, pose)
-        return Course(way.points, ahead, shift=Transition(side, side, "step", 0.0), way=way)
+        return OffsetCourse(way.points, ahead, shift=Transition(side, side, "step", 0.0), way=way)
 
-    def named(self, kind: str, ref: str) -> Iterator[Stage]:
+    def named(self, kind: str, ref: str) -> Iterator[ElementState]:
         """Storyboard elements of a kind by name or by path ("act::group::maneuver")."""
         return (s for s in self.stages if s.kind == kind and f"::{s.path}".endswith(f"::{ref}"))

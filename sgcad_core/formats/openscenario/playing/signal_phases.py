@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class _Controller:
 class SignalPlan:
     """All controllers of a file."""
 
-    def __init__(self, root: Node) -> None:
+    def __init__(self, root: XmlNode) -> None:
         network = root.find("RoadNetwork")
         holder = network.find("TrafficSignals") if network else None
         found = holder.children("TrafficSignalController") if holder else []
@@ -51,7 +51,7 @@ class SignalPlan:
                 scene.signals.update(phase[1])
 
 
-def _controller(node: Node, delays: dict[str, float]) -> _Controller:
+def _controller(node: XmlNode, delays: dict[str, float]) -> _Controller:
     phases = []
     for phase in node.children("Phase"):
         states = {s.text("trafficSignalId"): s.text("state") for s in phase.children("TrafficSignalState")}

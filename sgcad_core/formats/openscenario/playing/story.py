@@ -6,11 +6,17 @@ conditions from the next step on, as players have it. Knows no action's or condi
 
 from __future__ import annotations
 
-from sgcad_core.formats.openscenario.actions import Begin, Effect, Running, global_action, private_action
+from sgcad_core.formats.openscenario.actions import (
+    ActionStart,
+    GlobalEffect,
+    RunningAction,
+    global_action,
+    private_action,
+)
 from sgcad_core.formats.openscenario.actions.running import GLOBAL
 from sgcad_core.formats.openscenario.conditions import Trigger
-from sgcad_core.formats.openscenario.playing.scene import Scene, Stage
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.playing.scene import ElementState, Scene
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 _PRIORITIES = ("override", "overwrite", "parallel", "skip")
 
@@ -18,7 +24,7 @@ _PRIORITIES = ("override", "overwrite", "parallel", "skip")
 class Event:
     """Runs its actions for every actor of its group each time its trigger fires, up to its count."""
 
-    def __init__(self, node: Node, path: str, actors: list[str], select: bool, scene: Scene) -> None:
+    def __init__(self, node: XmlNode, path: str, actors: list[str], select: bool, scene: Scene) -> None:
         self.stage, self.actors, self._select = _stage("event", path, scene), actors, select
         self.priority = node.choice("priority", _PRIORITIES) if node.has("priority") else "override"
         self._count = self.left = _count(node)
@@ -28,7 +34,7 @@ class Event:
             raise node.fault("has no action", remedy="give it an <Action>")
         if not actors and not select and any(begin for begin, _, _ in self.actions):
             raise node.fault("a private action needs an actor", remedy="name one in the ManeuverGroup's <Actors>")
-        self.running: list[tuple[Running, Stage]] = []
+        self.running: list[tuple[RunningAction, ElementState]] = []
 
     @property
     def is_running(self) -> bool:
@@ -40,7 +46,7 @@ class Event:
         return self.stage.state == "standbyState" and self.trigger.fires(scene)
 
     def start(self, scene: Scene) -> None:
-        """Begin every action."""
+        """ActionStart every action."""
         self.left -= 1
         self.stage.turn("startTransition", "runningState", scene.step)
         self.running = []
@@ -90,7 +96,7 @@ class Event:
 class Maneuver:
     """Events that know each other by priority."""
 
-    def __init__(self, node: Node, path: str, actors: list[str], select: bool, scene: Scene) -> None:
+    def __init__(self, node: XmlNode, path: str, actors: list[str], select: bool, scene: Scene) -> None:
         node = node.scoped()
         self.stage = _stage("maneuver", path, scene)
         events = node.children("Event")
@@ -142,7 +148,7 @@ class Maneuver:
 class Group:
     """A maneuver group: maneuvers for the same actors, run as often as it says."""
 
-    def __init__(self, node: Node, path: str, scene: Scene) -> None:
+    def __init__(self, node: XmlNode, path: str, scene: Scene) -> None:
         self.left = _count(node)
         holder = node.need("Actors")
         select = holder.flag("selectTriggeringEntities", False)
@@ -171,7 +177,7 @@ class Group:
 class Act:
     """Groups that start together."""
 
-    def __init__(self, node: Node, path: str, scene: Scene) -> None:
+    def __init__(self, node: XmlNode, path: str, scene: Scene) -> None:
         self.stage = _stage("act", path, scene)
         self.start_trigger = Trigger(node.find("StartTrigger"), missing=True)
         self.stop_trigger = Trigger(node.find("StopTrigger"), missing=False)
@@ -218,10 +224,10 @@ class Act:
 class Storyboard:
     """All stories and the trigger that ends the scenario; `init`: actions of Init that are still under way."""
 
-    def __init__(self, node: Node, scene: Scene, init: list[Running]) -> None:
+    def __init__(self, node: XmlNode, scene: Scene, init: list[RunningAction]) -> None:
         self.init = init
         self.stop_trigger = Trigger(node.find("StopTrigger"), missing=False)
-        self.stories: list[tuple[Stage, list[Act]]] = []
+        self.stories: list[tuple[ElementState, list[Act]]] = []
         for story in node.children("Story"):
             scoped, name = story.scoped(), story.name
             acts = [Act(a, f"{name}::{a.name}", scene) for a in scoped.children("Act")]
@@ -248,20 +254,20 @@ class Storyboard:
         return scene.t_s if all(s.state == "completeState" for s, _ in self.stories) else None
 
 
-def _stage(kind: str, path: str, scene: Scene) -> Stage:
-    stage = Stage(kind, path)
+def _stage(kind: str, path: str, scene: Scene) -> ElementState:
+    stage = ElementState(kind, path)
     scene.stages.append(stage)
     return stage
 
 
-def _count(node: Node) -> int:
+def _count(node: XmlNode) -> int:
     count = node.number("maximumExecutionCount", 1)
     if count < 0 or count != int(count):
         raise node.fault("attribute 'maximumExecutionCount' is no count", f"{count:g}")
     return int(count)
 
 
-def _action(node: Node, path: str, scene: Scene) -> tuple[Begin | None, Effect | None, Stage]:
+def _action(node: XmlNode, path: str, scene: Scene) -> tuple[ActionStart | None, GlobalEffect | None, ElementState]:
     stage = _stage("action", path, scene)
     if not node.children():
         node.doubt("needs exactly one child element", "0", "nothing happens")

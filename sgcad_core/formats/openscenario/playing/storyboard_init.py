@@ -1,23 +1,23 @@
-"""The Init of a storyboard: who stands where, how fast, before the clock starts."""
+"""The Init of a storyboard: places and speeds of entities before the clock starts."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from sgcad_core.formats.openscenario.actions import Begin, Running, global_action, private_action
-from sgcad_core.formats.openscenario.actions.running import GLOBAL, Effect, at_once
-from sgcad_core.formats.openscenario.playing.body import draw
+from sgcad_core.formats.openscenario.actions import ActionStart, RunningAction, global_action, private_action
+from sgcad_core.formats.openscenario.actions.running import GLOBAL, GlobalEffect, at_once
+from sgcad_core.formats.openscenario.playing.body import place_trailers
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 _PLACING = ("TeleportAction", "FollowTrajectoryAction", "AddEntityAction", "ConnectTrailerAction")
 
 
 class _Move(NamedTuple):
-    begin: Begin
+    begin: ActionStart
     name: str
-    node: Node
+    node: XmlNode
 
     @property
     def teleports(self) -> bool:
@@ -29,7 +29,7 @@ class _Move(NamedTuple):
         return all(scene.bodies[ref].pose is not None for ref in refs if ref in scene.bodies)
 
 
-def initialize(board: Node, scene: Scene) -> list[Running]:
+def initialize(board: XmlNode, scene: Scene) -> list[RunningAction]:
     """Run the Init actions; what is still under way comes back.
 
     Teleports come first, each when what it refers to has its place, whatever the order in the file.
@@ -47,12 +47,12 @@ def initialize(board: Node, scene: Scene) -> list[Running]:
     moves = [*_moves(actions, scene), *_entities(actions)]
     _teleport([m for m in moves if m.teleports], scene)
     running = [m.begin(scene, m.name) for m in moves if not m.teleports]
-    draw(scene.bodies, anew=True)
+    place_trailers(scene.bodies, anew=True)
     _check_places(board, node, scene)
     return [r for r in running if r.domains]
 
 
-def _moves(actions: Node, scene: Scene) -> Iterator[_Move]:
+def _moves(actions: XmlNode, scene: Scene) -> Iterator[_Move]:
     for private in actions.children("Private"):
         names = scene.members(private.text("entityRef"), private)
         for action in private.children("PrivateAction"):
@@ -60,13 +60,13 @@ def _moves(actions: Node, scene: Scene) -> Iterator[_Move]:
             yield from (_Move(begin, name, action) for name in names)
 
 
-def _entities(actions: Node) -> Iterator[_Move]:
+def _entities(actions: XmlNode) -> Iterator[_Move]:
     """Entities that are added or taken away before the clock starts, in turn with those that are teleported."""
     for child in actions.children("GlobalAction"):
         if child.only().tag == "EntityAction":
             effect = global_action(child)
 
-            def begin(scene: Scene, name: str, effect: Effect = effect) -> Running:
+            def begin(scene: Scene, name: str, effect: GlobalEffect = effect) -> RunningAction:
                 effect(scene)
                 return at_once(scene.bodies[name])
 
@@ -80,7 +80,7 @@ def _teleport(waiting: list[_Move], scene: Scene) -> None:
         move.begin(scene, move.name)
 
 
-def _check_places(board: Node, blame: Node, scene: Scene) -> None:
+def _check_places(board: XmlNode, blame: XmlNode, scene: Scene) -> None:
     """An entity without a place must get one later; it is absent until then."""
     for name, body in scene.bodies.items():
         if body.pose is None:
@@ -91,7 +91,7 @@ def _check_places(board: Node, blame: Node, scene: Scene) -> None:
             body.present = False
 
 
-def _placed_later(board: Node, name: str) -> bool:
+def _placed_later(board: XmlNode, name: str) -> bool:
     for group in board.element.iterfind(".//ManeuverGroup"):
         if all(group.find(f".//{tag}") is None for tag in _PLACING):
             continue

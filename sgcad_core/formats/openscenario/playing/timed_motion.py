@@ -1,4 +1,4 @@
-"""Poses, boxes, transitions and timed vertices: what played motion is made of.
+"""Boxes, transitions and timed vertices: the parts of played motion.
 
 Metres, seconds, radians; poses are those of the entity's origin. Knows no XML, no road and no storyboard.
 """
@@ -12,19 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.geometry.plane import Floats, wrap_angle
 
 EPSILON = 1e-9
 MAX_S = 300.0
 """Longest scenario that is played."""
-
-
-class Pose(NamedTuple):
-    """Place and heading."""
-
-    x_m: float
-    y_m: float
-    heading_rad: float
 
 
 class BoxShape(NamedTuple):
@@ -85,7 +78,7 @@ class Transition:
         return self.shape == "step" or passed - self.begin >= self.span - EPSILON
 
 
-class Timed:
+class TimedMotion:
     """Timed vertices, evaluated once for the whole clock; exact at vertices, headings along the shortest arc."""
 
     def __init__(
@@ -104,10 +97,10 @@ class Timed:
         self._of_centers: tuple[BoxShape, list[float]] | None = None
         self._rolls = None if rolls_rad is None else np.interp(t, times_s, np.unwrap(rolls_rad)).tolist()
 
-    def eased(self, first_mps: float, dt_s: float) -> Timed:
+    def eased(self, first_mps: float, dt_s: float) -> TimedMotion:
         """The same places at the same times, but the speed changes evenly between them, from `first_mps` on.
 
-        Who would have to turn back in a piece brakes evenly to its end, and waits there.
+        Where the speed would become negative within a piece, the entity brakes evenly to its end and waits.
         """
         times, points, headings = self._vertices
         rows, speed = [np.array([times[0], *points[0], headings[0]])], first_mps
@@ -116,7 +109,7 @@ class Timed:
             piece, speed = _eased_piece(ends, speed, dt_s)
             rows += list(piece)
         t, x, y, heading = np.array(rows).T
-        return Timed(t, np.column_stack((x, y)), heading, (self.first_step, dt_s))
+        return TimedMotion(t, np.column_stack((x, y)), heading, (self.first_step, dt_s))
 
     def pose(self, step: int) -> Pose:
         """Pose at a step of the clock; before and behind the vertices, that of the nearest one."""

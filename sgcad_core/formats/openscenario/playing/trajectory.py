@@ -7,15 +7,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sgcad_core.formats.openscenario.playing.offset_course import Course
-from sgcad_core.formats.openscenario.playing.positions import POSITIONS, Spot, Where, orientation
+from sgcad_core.formats.opendrive.geometry import Pose
+from sgcad_core.formats.openscenario.playing.offset_course import OffsetCourse
+from sgcad_core.formats.openscenario.playing.positions import POSITIONS, LocatedPose, PositionFunction, orientation
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose, Timed, tangents
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.playing.timed_motion import TimedMotion, tangents
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 from sgcad_core.formats.openscenario.roads.shapes import SHAPES, Drawn, Line
 from sgcad_core.geometry.plane import Floats, arc_lengths
 
-Made = Callable[[Scene, str], Timed | Course]
+FollowedLine = Callable[[Scene, str], TimedMotion | OffsetCourse]
 """What a body follows once its action starts."""
 
 CORNER_S = 1e-6
@@ -23,7 +24,7 @@ CORNER_S = 1e-6
 _UNTIMED = "give every vertex one, or use <None/> as time reference"
 
 
-def trajectory(node: Node) -> Made:
+def trajectory(node: XmlNode) -> FollowedLine:
     """Compile a <FollowTrajectoryAction>."""
     holder = node.find("TrajectoryRef") or node
     shape = holder.either("Trajectory")
@@ -36,20 +37,20 @@ def trajectory(node: Node) -> Made:
     return _timed(shape, drawn, timing, start)
 
 
-def _shape(node: Node) -> Drawn:
+def _shape(node: XmlNode) -> Drawn:
     return SHAPES.compile(node.need("Shape").only())
 
 
-def _timed(node: Node, drawn: Drawn, timing: Node, start_m: float) -> Made:
+def _timed(node: XmlNode, drawn: Drawn, timing: XmlNode, start_m: float) -> FollowedLine:
     """Vertex times are scaled, moved by the offset and, in the relative domain, count from the action's start.
 
-    Who starts some way along the line is there at once: relative times count from that place.
+    An entity that starts along the line is there at once: relative times count from that place.
     """
     relative = timing.choice("domainAbsoluteRelative", ("absolute", "relative")) == "relative"
     scale, offset = timing.positive("scale"), timing.number("offset")
     _check_times(node)
 
-    def make(scene: Scene, actor: str) -> Timed:
+    def make(scene: Scene, actor: str) -> TimedMotion:
         line = drawn(scene, actor)
         if line.times_s is None:
             raise node.fault("a vertex has no time", remedy=_UNTIMED)
@@ -60,7 +61,7 @@ def _timed(node: Node, drawn: Drawn, timing: Node, start_m: float) -> Made:
         if headings is None:
             times, points, headings = _cornered(times, points)
         rolls = line.rolls if len(times) == len(line.points) else None
-        return Timed(times, points, headings, (scene.step, scene.dt_s), rolls)
+        return TimedMotion(times, points, headings, (scene.step, scene.dt_s), rolls)
 
     return make
 
@@ -76,7 +77,7 @@ def _cornered(times_s: Floats, points: Floats) -> tuple[Floats, Floats, Floats]:
     return both[:, 0], both[:, 1:3], both[:, 3]
 
 
-def _check_times(node: Node) -> None:
+def _check_times(node: XmlNode) -> None:
     """Times of vertices, as far as they are known before the action starts."""
     vertices = node.need("Shape").only().children("Vertex", "ControlPoint")
     times = [v.number("time") for v in vertices if v.has("time")]
@@ -86,7 +87,7 @@ def _check_times(node: Node) -> None:
         raise node.fault("vertex times fall", remedy="order the vertices by time")
 
 
-def _course(node: Node, line: Line, start_m: float, closed: bool) -> Course:
+def _course(node: XmlNode, line: Line, start_m: float, closed: bool) -> OffsetCourse:
     points, headings = line.points, line.headings
     if closed:
         points = np.vstack((points, points[:1]))
@@ -94,21 +95,21 @@ def _course(node: Node, line: Line, start_m: float, closed: bool) -> Course:
     apart = np.concatenate(([True], np.hypot(*np.diff(points, axis=0).T) > 1e-6))
     if apart.sum() < 2:
         raise node.fault("all vertices lie in one place", remedy="an untimed trajectory needs two places")
-    course = Course(points[apart], start_m, closed=closed)
+    course = OffsetCourse(points[apart], start_m, closed=closed)
     course.headings = None if headings is None else np.unwrap(headings[apart])
     return course
 
 
 @POSITIONS.plays("TrajectoryPosition")
-def _trajectory_position(node: Node) -> Where:
+def _trajectory_position(node: XmlNode) -> PositionFunction:
     shape = node.need("TrajectoryRef").either("Trajectory")
     drawn, s_m, t_m, turn = _shape(shape), node.number("s"), node.number("t", 0.0), orientation(node)
 
-    def where(scene: Scene) -> Spot:
+    def where(scene: Scene) -> LocatedPose:
         line = drawn(scene, "")
         pose = _along(line.points, s_m)
         x, y, h = pose
-        return Spot(turn(Pose(x - t_m * math.sin(h), y + t_m * math.cos(h), h)))
+        return LocatedPose(turn(Pose(x - t_m * math.sin(h), y + t_m * math.cos(h), h)))
 
     return where
 

@@ -10,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 
 from sgcad_core.errors import BadInput, InvalidOutput
-from sgcad_core.formats.openscenario.reading.elements import Book, Node, read_root
+from sgcad_core.formats.openscenario.reading.elements import FileContext, XmlNode, read_root
 
 MAX_FILES = 200
 MAX_BYTES = 20_000_000
@@ -39,10 +39,10 @@ def located(folder: Path, path: str) -> Path:
 class CatalogFolders:
     """Implements `read.Catalogs` for the folders in a file's <CatalogLocations>."""
 
-    def __init__(self, root: Node, folder: Path) -> None:
+    def __init__(self, root: XmlNode, folder: Path) -> None:
         self._root, self._folder = root, folder
 
-    def entry(self, reference: Node) -> Node:
+    def entry(self, reference: XmlNode) -> XmlNode:
         """The entry with its parameters assigned. Raises InvalidOutput naming what there is."""
         if reference.book.depth >= MAX_DEPTH:
             raise reference.fault(f"catalogs refer to each other more than {MAX_DEPTH} deep")
@@ -54,14 +54,14 @@ class CatalogFolders:
             raise reference.fault("no such catalog entry", f"{catalog}/{name}", has)
         file, found = self._entries[catalog, name]
         own = reference.book
-        book = Book(file.name, self, own.notes, own.strict, own.depth + 1)
-        return Node(found.element, reference.scope, book).scoped(_assigned(reference))
+        book = FileContext(file.name, self, own.notes, own.strict, own.depth + 1)
+        return XmlNode(found.element, reference.scope, book).scoped(_assigned(reference))
 
     @cached_property
-    def _entries(self) -> dict[tuple[str, str], tuple[Path, Node]]:
-        found: dict[tuple[str, str], tuple[Path, Node]] = {}
+    def _entries(self) -> dict[tuple[str, str], tuple[Path, XmlNode]]:
+        found: dict[tuple[str, str], tuple[Path, XmlNode]] = {}
         for file in dict.fromkeys(self._files()):
-            root = read_root(read_text(file), book=Book(file.name))
+            root = read_root(read_text(file), book=FileContext(file.name))
             if (catalog := root.find("Catalog")) is None:
                 continue
             for entry in catalog.children():
@@ -80,7 +80,7 @@ class CatalogFolders:
             yield from files
 
 
-def _assigned(reference: Node) -> dict[str, str]:
+def _assigned(reference: XmlNode) -> dict[str, str]:
     """Values that a reference gives to the entry's parameters."""
     holder, given = reference.find("ParameterAssignments"), dict[str, str]()
     for entry in holder.children("ParameterAssignment") if holder else ():

@@ -29,12 +29,12 @@ _NAME = re.compile(r"\$(\w+)")
 class Catalogs(Protocol):
     """Where catalog entries come from."""
 
-    def entry(self, reference: Node) -> Node:
+    def entry(self, reference: XmlNode) -> XmlNode:
         """The entry that a <CatalogReference> names. Raises InvalidOutput."""
 
 
 @dataclass(eq=False)
-class Book:
+class FileContext:
     """What all elements of one file share: the file's name, its catalogs and what is noted of it."""
 
     file: str = ""
@@ -47,12 +47,12 @@ class Book:
 
 
 @dataclass(frozen=True, eq=False)
-class Node:
+class XmlNode:
     """An element and the parameters in force there."""
 
     element: Element
     scope: Mapping[str, str]
-    book: Book = field(default_factory=Book)
+    book: FileContext = field(default_factory=FileContext)
     declared: bool = False
     """Whether its own parameter declarations are in force already."""
 
@@ -61,9 +61,9 @@ class Node:
         """The element's name."""
         return str(self.element.tag)
 
-    def at(self, element: Element) -> Node:
+    def at(self, element: Element) -> XmlNode:
         """Another element of the same file with the same parameters."""
-        return Node(element, self.scope, self.book)
+        return XmlNode(element, self.scope, self.book)
 
     # -------------------------------------------------------------- faults
     def _found(self, what: str, value: str, remedy: str, severity: Severity = "repair") -> Finding:
@@ -73,15 +73,14 @@ class Node:
         return Finding(source=SOURCE, severity=severity, what=what, where=where, value=value[:200], remedy=remedy)
 
     def doubt(self, what: str, value: str = "", remedy: str = "") -> None:
-        """A fault in a file of ours, a note in a stranger's: what other players let pass."""
+        """Raises a fault in an own file, adds a note in a third-party one: for what other players accept."""
         if self.book.strict:
             raise self.fault(what, value, remedy)
         self.note(what, value, remedy)
 
     def fault(self, what: str, value: str = "", remedy: str = "") -> InvalidOutput:
         """An error to raise, naming this element, its name attribute, its line and its file."""
-        finding = self._found(what, value, remedy)
-        return InvalidOutput(finding.line(), [finding])
+        return InvalidOutput.of(self._found(what, value, remedy))
 
     def unsupported(self, what: str = "", remedy: str = "use timed world polylines") -> Unsupported:
         """The error for what the player does not do."""
@@ -177,16 +176,16 @@ class Node:
         return word
 
     # -------------------------------------------------------------- elements
-    def children(self, *tags: str) -> list[Node]:
+    def children(self, *tags: str) -> list[XmlNode]:
         """Child elements in order, of the given names if any are given."""
         found = (e for e in self.element if isinstance(e.tag, str))
         return [self.at(e) for e in found if not tags or e.tag in tags]
 
-    def find(self, *tags: str) -> Node | None:
+    def find(self, *tags: str) -> XmlNode | None:
         """The first child of one of these names."""
         return next(iter(self.children(*tags)), None)
 
-    def need(self, *path: str) -> Node:
+    def need(self, *path: str) -> XmlNode:
         """The element down a path of names. Raises InvalidOutput naming what is missing."""
         here = self
         for tag in path:
@@ -196,14 +195,14 @@ class Node:
             here = child
         return here
 
-    def only(self) -> Node:
+    def only(self) -> XmlNode:
         """The child of an element that is a choice of one."""
         children = self.children()
         if len(children) != 1:
             raise self.fault("needs exactly one child element", str(len(children)))
         return children[0]
 
-    def either(self, *tags: str) -> Node:
+    def either(self, *tags: str) -> XmlNode:
         """The child of one of these names, a <CatalogReference> to one followed. Raises InvalidOutput without."""
         child = self.find(*tags, "CatalogReference")
         if child is None:
@@ -211,7 +210,7 @@ class Node:
             raise self.fault(f"needs a {named}, inline or by <CatalogReference>")
         return child.followed(*tags)
 
-    def followed(self, *tags: str) -> Node:
+    def followed(self, *tags: str) -> XmlNode:
         """Itself with its parameters in force, or the catalog entry that it refers to, which must be one of `tags`."""
         if self.tag != "CatalogReference":
             return self.scoped()
@@ -224,7 +223,7 @@ class Node:
         return entry
 
     # -------------------------------------------------------------- parameters
-    def scoped(self, given: Mapping[str, str] | None = None) -> Node:
+    def scoped(self, given: Mapping[str, str] | None = None) -> XmlNode:
         """The same element with its own parameter declarations in force; `given` values replace declared ones."""
         declared = self.find("ParameterDeclarations")
         if self.declared or (declared is None and not given):
@@ -232,10 +231,10 @@ class Node:
         scope, given = dict(self.scope), given or {}
         for entry in declared.children("ParameterDeclaration") if declared else ():
             name = entry.text("name").lstrip("$")
-            scope[name] = given[name] if name in given else Node(entry.element, scope, self.book).text("value", "")
+            scope[name] = given[name] if name in given else XmlNode(entry.element, scope, self.book).text("value", "")
         if len(scope) > MAX_PARAMETERS:
             raise self.fault(f"more than {MAX_PARAMETERS} parameters", str(len(scope)), "declare fewer")
-        return Node(self.element, scope, self.book, declared=True)
+        return XmlNode(self.element, scope, self.book, declared=True)
 
     def _resolve(self, raw: str) -> str:
         filled = self._filled(raw)
@@ -261,14 +260,14 @@ class Node:
         return self.scope[name]
 
 
-def read_root(xosc: str, given: Mapping[str, str] | None = None, book: Book | None = None) -> Node:
+def read_root(xosc: str, given: Mapping[str, str] | None = None, book: FileContext | None = None) -> XmlNode:
     """The root of an OpenSCENARIO file with its parameters; `given` replaces declared values.
 
     Raises InvalidOutput where it is none.
     """
     if len(xosc) > MAX_CHARACTERS:
         raise InvalidOutput(f"xosc: {len(xosc)} characters, at most {MAX_CHARACTERS}: write fewer vertices")
-    root = Node(parse_xml(xosc, book.file if book and book.file else "xosc"), {}, book or Book())
+    root = XmlNode(parse_xml(xosc, book.file if book and book.file else "xosc"), {}, book or FileContext())
     if root.tag != "OpenSCENARIO":
         raise root.fault("no OpenSCENARIO file", remedy="the root element is <OpenSCENARIO>")
     return root.scoped(given)

@@ -6,11 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sgcad_core.errors import BadInput
-from sgcad_core.formats.openscenario.playing.player import DT_S, Played, perform
+from sgcad_core.formats.openscenario.playing.player import DT_S, Played, play_scenario
 from sgcad_core.formats.openscenario.playing.timed_motion import MAX_S
 from sgcad_core.formats.openscenario.reading.catalogs import CatalogFolders, located, read_text
-from sgcad_core.formats.openscenario.reading.elements import Book, Node, read_root
+from sgcad_core.formats.openscenario.reading.elements import FileContext, XmlNode, read_root
 from sgcad_core.formats.openscenario.reading.variation import Given, parameter_sets, scenario_file
 from sgcad_core.formats.openscenario.roads.road_network import roads_of
 
@@ -29,7 +28,7 @@ def variations(file: Path, given: Mapping[str, str] | None = None) -> list[Varia
 
     Raises BadInput for what is no such file, InvalidOutput for a distribution that cannot be read.
     """
-    root = read_root(read_text(file), book=Book(file.name))
+    root = read_root(read_text(file), book=FileContext(file.name))
     target = scenario_file(root)
     if target is None:
         return [Variation(file, dict(given or {}))]
@@ -39,10 +38,10 @@ def variations(file: Path, given: Mapping[str, str] | None = None) -> list[Varia
     return [Variation(scenario, {**s, **(given or {})}, f"set-{i + 1:0{width}d}") for i, s in enumerate(sets)]
 
 
-def read_scenario(variation: Variation) -> Node:
+def read_scenario(variation: Variation) -> XmlNode:
     """The root of a scenario with its parameters and its catalogs. Raises BadInput, InvalidOutput."""
     text, folder = read_text(variation.file), variation.file.parent
-    book = Book(variation.file.name, strict=False)
+    book = FileContext(variation.file.name, strict=False)
     root = read_root(text, variation.given, book)
     book.catalogs = CatalogFolders(root, folder)
     return root
@@ -59,10 +58,10 @@ def play_file(
     root = read_scenario(variation)
     xodr, missing = _map_of(root, variation.file.parent, maps)
     roads = roads_of(xodr) if xodr is not None else None
-    return perform(root, roads, dt_s, until_s, missing), xodr
+    return play_scenario(root, roads, dt_s, until_s, missing), xodr
 
 
-def _map_of(root: Node, folder: Path, maps: Sequence[Path]) -> tuple[str | None, str]:
+def _map_of(root: XmlNode, folder: Path, maps: Sequence[Path]) -> tuple[str | None, str]:
     """The map's text, or why there is none."""
     network = root.find("RoadNetwork")
     logic = network.find("LogicFile") if network else None
@@ -84,10 +83,3 @@ def _places(folder: Path, named: str, maps: Sequence[Path]) -> Iterator[Path]:
     for other in maps:
         yield other / name
         yield other / f"{name}.xodr"
-
-
-def scenario_files(folder: Path) -> list[Path]:
-    """Scenario and distribution files of a folder and below, without catalogs. Raises BadInput."""
-    if not folder.is_dir():
-        raise BadInput(f"{folder}: no such folder")
-    return [f for f in sorted(folder.rglob("*.xosc")) if "<Catalog " not in read_text(f)]

@@ -11,7 +11,7 @@ import random
 from collections.abc import Callable, Iterator
 
 from sgcad_core.formats.openscenario.playing.families import Family
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 
 MAX_SETS = 10_000
 MAX_VALUES = 10_000
@@ -21,13 +21,13 @@ STOCHASTIC: Family[Draw] = Family("stochastic distribution")
 STOCHASTIC.refuses("UserDefinedDistribution", remark="it is the user's own", remedy="use a standard distribution")
 
 
-def scenario_file(root: Node) -> str | None:
+def scenario_file(root: XmlNode) -> str | None:
     """The scenario that a distribution file varies; None for a file that is no distribution."""
     holder = root.find("ParameterValueDistribution")
     return None if holder is None else holder.need("ScenarioFile").text("filepath")
 
 
-def parameter_sets(root: Node) -> list[Given]:
+def parameter_sets(root: XmlNode) -> list[Given]:
     """Parameter sets in order, at least one and at most 10000. Raises InvalidOutput, Unsupported."""
     holder = root.need("ParameterValueDistribution")
     if found := holder.find("Deterministic"):
@@ -35,7 +35,7 @@ def parameter_sets(root: Node) -> list[Given]:
     return _stochastic(holder.need("Stochastic"))
 
 
-def _deterministic(holder: Node) -> list[Given]:
+def _deterministic(holder: XmlNode) -> list[Given]:
     axes = [_axis(node) for node in holder.children()]
     count = 1
     for axis in axes:
@@ -45,7 +45,7 @@ def _deterministic(holder: Node) -> list[Given]:
     return [{k: v for part in parts for k, v in part.items()} for parts in itertools.product(*axes)]
 
 
-def _axis(node: Node) -> list[Given]:
+def _axis(node: XmlNode) -> list[Given]:
     if node.tag == "DeterministicSingleParameterDistribution":
         name, inner = node.text("parameterName").lstrip("$"), node.only()
         return [{name: value} for value in _values(inner)]
@@ -63,7 +63,7 @@ def _axis(node: Node) -> list[Given]:
     return sets
 
 
-def _values(node: Node) -> list[str]:
+def _values(node: XmlNode) -> list[str]:
     if node.tag == "DistributionSet":
         values = [e.text("value") for e in node.children("Element")]
     elif node.tag == "DistributionRange":
@@ -75,7 +75,7 @@ def _values(node: Node) -> list[str]:
     return values
 
 
-def _range(node: Node) -> Iterator[str]:
+def _range(node: XmlNode) -> Iterator[str]:
     limits, step = node.need("Range"), node.positive("stepWidth")
     low, high = limits.number("lowerLimit"), limits.number("upperLimit")
     count = int((high - low) / step + 1e-9) + 1
@@ -85,7 +85,7 @@ def _range(node: Node) -> Iterator[str]:
 
 
 # ------------------------------------------------------------------ stochastic
-def _stochastic(holder: Node) -> list[Given]:
+def _stochastic(holder: XmlNode) -> list[Given]:
     count = holder.whole("numberOfTestRuns")
     if not 1 <= count <= MAX_SETS:
         raise holder.fault(f"'numberOfTestRuns' must lie within 1 and {MAX_SETS}", str(count))
@@ -97,7 +97,7 @@ def _stochastic(holder: Node) -> list[Given]:
     return [{name: draw(rng) for name, draw in draws.items()} for _ in range(count)]
 
 
-def _within(node: Node) -> tuple[float, float]:
+def _within(node: XmlNode) -> tuple[float, float]:
     limits = node.find("Range")
     low, high = (limits.number("lowerLimit"), limits.number("upperLimit")) if limits else (-1e9, 1e9)
     if low > high:
@@ -106,7 +106,7 @@ def _within(node: Node) -> tuple[float, float]:
 
 
 @STOCHASTIC.plays("NormalDistribution", "LogNormalDistribution", remark="cut to its range")
-def _normal(node: Node) -> Draw:
+def _normal(node: XmlNode) -> Draw:
     low, high = _within(node)
     mean, spread = node.number("expectedValue"), node.positive("variance") ** 0.5
     draw = random.Random.lognormvariate if node.tag == "LogNormalDistribution" else random.Random.gauss
@@ -114,13 +114,13 @@ def _normal(node: Node) -> Draw:
 
 
 @STOCHASTIC.plays("UniformDistribution")
-def _uniform(node: Node) -> Draw:
+def _uniform(node: XmlNode) -> Draw:
     low, high = _within(node)
     return lambda rng: f"{rng.uniform(low, high):.12g}"
 
 
 @STOCHASTIC.plays("PoissonDistribution", remark="cut to its range")
-def _poisson(node: Node) -> Draw:
+def _poisson(node: XmlNode) -> Draw:
     low, high = _within(node)
     mean = node.positive("expectedValue")
 
@@ -134,7 +134,7 @@ def _poisson(node: Node) -> Draw:
 
 
 @STOCHASTIC.plays("ProbabilityDistributionSet")
-def _set(node: Node) -> Draw:
+def _set(node: XmlNode) -> Draw:
     entries = node.children("Element")
     values, weights = [e.text("value") for e in entries], [e.number("weight") for e in entries]
     if not values or min(weights) < 0 or sum(weights) <= 0:
@@ -143,7 +143,7 @@ def _set(node: Node) -> Draw:
 
 
 @STOCHASTIC.plays("Histogram")
-def _histogram(node: Node) -> Draw:
+def _histogram(node: XmlNode) -> Draw:
     bins = node.children("HistogramBin")
     weights = [b.number("weight") for b in bins]
     spans = [_within(b) for b in bins]

@@ -1,6 +1,6 @@
-"""A motion told by lanes: where it starts, which roads it takes, the one shift to another lane or offset on the way.
+"""A motion in lane terms: its start, its roads, and at most one shift to another lane or offset.
 
-What cannot be told so (corners that are cut, skids, ways off the roads) has no such telling. Knows no XML but the map.
+Motion that lanes cannot express (cut corners, skids, ways off the roads) gives None. Knows no XML but the map.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.case.records import Trajectory
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
 from sgcad_core.formats.openscenario.roads.way import LanePlace, Way
 from sgcad_core.geometry.plane import Floats, arc_lengths, wrap_angle
@@ -29,15 +29,15 @@ SAME_M = 1e-3
 UNSEEN = 1.3
 """A shift that the contact cuts short leads so much farther than it was seen to at most."""
 MOST_MPS2 = 6.0
-"""Lateral acceleration of a shift at most: what is more abrupt nobody drives."""
+"""Largest lateral acceleration of a shift; vehicles are not driven more abruptly."""
 LOST_M = 0.3
 """By how much the way on the curve may be longer than the lane: players count speed along either."""
 SKIDS_RAD = 0.12
 """Of a heading against the direction in which lane and shift lead, at most."""
 AHEAD_M = 2.0
-"""A place that is reached is told so far ahead, since players hit no point exactly."""
+"""Distance at which a place counts as reached, since players hit no point exactly."""
 STILL_M = 0.02
-"""Who moves less than this in a step has no direction."""
+"""An entity that moves less than this in a step has no direction."""
 INTO_M = 5.0
 """How far beyond a junction a route's last waypoint lies."""
 CURVES: Mapping[str, Callable[[Floats], Floats]] = {
@@ -67,7 +67,7 @@ class Shift(NamedTuple):
     offset_m: float
     """In the lane reached at the end, to the left of the road's direction."""
     lateral_mps2: float
-    """Largest lateral acceleration of the curve, by which the offset's duration is told."""
+    """Largest lateral acceleration of the curve, which defines the duration of an offset."""
     ahead: tuple[LanePlace, float, float] | None
     """A place AHEAD_M farther on the way, and its x and y; None at the end of the motion."""
 
@@ -205,7 +205,7 @@ class _Fit(NamedTuple):
 
     @property
     def drives(self) -> bool:
-        """Whether it tells the motion, and people would drive it."""
+        """Whether it fits the motion and is drivable."""
         return self.error_m <= SHIFTS_M and self.across_mps2 <= MOST_MPS2
 
 

@@ -10,14 +10,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 from sgcad_core.geometry.plane import Floats
 
 STEP_M = 0.25
 MAX_ROAD_M = 20_000.0
 
 
-def reference_line(road: Node) -> Floats:
+def reference_line(road: XmlNode) -> Floats:
     """(n, 4) s, x, y, heading along a road's reference line; headings are continuous. Raises InvalidOutput."""
     parts = [_sampled(g) for g in road.need("planView").children("geometry")]
     if not parts:
@@ -28,7 +28,7 @@ def reference_line(road: Node) -> Floats:
     return rows
 
 
-def _sampled(geometry: Node) -> Floats:
+def _sampled(geometry: XmlNode) -> Floats:
     """(n, 4) s, x, y, heading of one <geometry>; s is the arc length scaled to the stated length."""
     length = geometry.number("length")
     if not 0 <= length <= MAX_ROAD_M:
@@ -48,16 +48,16 @@ def _sampled(geometry: Node) -> Floats:
 Local = tuple[Floats, Floats, Floats]
 
 
-def _line(shape: Node, share: Floats, length: float) -> Local:
+def _line(shape: XmlNode, share: Floats, length: float) -> Local:
     return share * length, np.zeros_like(share), np.zeros_like(share)
 
 
-def _arc(shape: Node, share: Floats, length: float) -> Local:
+def _arc(shape: XmlNode, share: Floats, length: float) -> Local:
     k = shape.number("curvature")
     return _curved(k * share * length, share, length)
 
 
-def _spiral(shape: Node, share: Floats, length: float) -> Local:
+def _spiral(shape: XmlNode, share: Floats, length: float) -> Local:
     first, last = shape.number("curvStart"), shape.number("curvEnd")
     return _curved((first + (last - first) * share / 2) * share * length, share, length)
 
@@ -71,7 +71,7 @@ def _curved(turn: Floats, share: Floats, length: float) -> Local:
     return u, v, turn
 
 
-def _param_poly3(shape: Node, share: Floats, length: float) -> Local:
+def _param_poly3(shape: XmlNode, share: Floats, length: float) -> Local:
     p = share * (1.0 if shape.text("pRange", "normalized") == "normalized" else length)
     k = [shape.number(name) for name in ("aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV")]
     u = k[0] + p * (k[1] + p * (k[2] + p * k[3]))
@@ -80,7 +80,7 @@ def _param_poly3(shape: Node, share: Floats, length: float) -> Local:
     return u, v, np.unwrap(np.arctan2(dv, du))
 
 
-def _poly3(shape: Node, share: Floats, length: float) -> Local:
+def _poly3(shape: XmlNode, share: Floats, length: float) -> Local:
     """v = a + b u + c u² + d u³ with u along the start heading; u ends where the arc length is the stated one."""
     a, b, c, d = (shape.number(name) for name in "abcd")
     u = share * length
@@ -92,7 +92,7 @@ def _poly3(shape: Node, share: Floats, length: float) -> Local:
     return u, v, np.arctan(slope)
 
 
-_SHAPES: dict[str, Callable[[Node, Floats, float], Local]] = {
+_SHAPES: dict[str, Callable[[XmlNode, Floats, float], Local]] = {
     "line": _line, "arc": _arc, "spiral": _spiral, "paramPoly3": _param_poly3,
     "poly3": _poly3,
 }  # fmt: skip

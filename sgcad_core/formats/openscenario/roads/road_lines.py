@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.opendrive.geometry import Pose
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 from sgcad_core.formats.openscenario.roads.road_geometry import MAX_ROAD_M, reference_line
 from sgcad_core.geometry.plane import Floats
 
@@ -40,7 +40,7 @@ class Cubic(NamedTuple):
 class Lane:
     """One lane of one section: its width or outer border over s, and the lanes it leads to."""
 
-    node: Node
+    node: XmlNode
     kind: str
     widths: tuple[Cubic, ...]
     borders: tuple[Cubic, ...]
@@ -81,7 +81,7 @@ class LaneSection:
 class RoadLine:
     """One road: its sampled reference line and its lanes."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: XmlNode) -> None:
         self.node, self.id = node, node.text("id")
         self.length_m = node.positive("length")
         if self.length_m > MAX_ROAD_M:
@@ -169,7 +169,7 @@ class RoadLine:
         return [LaneSection(n.number("s"), end, _lanes(n)) for n, end in zip(nodes, ends, strict=True)]
 
 
-def _lanes(section: Node) -> dict[int, Lane]:
+def _lanes(section: XmlNode) -> dict[int, Lane]:
     lanes = [lane for side in section.children("left", "right") for lane in side.children("lane")]
     if len(lanes) > 2 * MAX_LANES:
         raise section.fault(f"more than {2 * MAX_LANES} lanes", str(len(lanes)))
@@ -180,7 +180,7 @@ def _lanes(section: Node) -> dict[int, Lane]:
     return found
 
 
-def _lane(node: Node) -> Lane:
+def _lane(node: XmlNode) -> Lane:
     link = node.find("link")
     ends = [link.find(side) if link else None for side in ("predecessor", "successor")]
     before, after = (end.whole("id") if end else None for end in ends)
@@ -188,7 +188,7 @@ def _lane(node: Node) -> Lane:
     return Lane(node, node.text("type", "driving"), widths, borders, before, after)
 
 
-def _cubics(entries: Sequence[Node], start: str) -> tuple[Cubic, ...]:
+def _cubics(entries: Sequence[XmlNode], start: str) -> tuple[Cubic, ...]:
     return tuple(Cubic(e.number(start), *(e.number(k, 0.0) for k in "abcd")) for e in entries)
 
 

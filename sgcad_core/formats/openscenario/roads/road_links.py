@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import NamedTuple
 
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 from sgcad_core.formats.openscenario.roads.road_lines import RoadLine
 
 END = {1: "end", -1: "start"}
@@ -38,7 +38,7 @@ class Leg(NamedTuple):
 class RoadLinks:
     """Links between the lanes and roads of a network."""
 
-    def __init__(self, roads: Mapping[str, RoadLine], junctions: Mapping[str, Node]) -> None:
+    def __init__(self, roads: Mapping[str, RoadLine], junctions: Mapping[str, XmlNode]) -> None:
         self._roads, self._junctions = roads, junctions
 
     # -------------------------------------------------------------- lanes
@@ -97,7 +97,7 @@ class RoadLinks:
                 self._add_direct(found, junction, connection)
         return dict(found)
 
-    def _add_direct(self, found: dict[tuple[str, str], list[Leg]], junction: str, connection: Node) -> None:
+    def _add_direct(self, found: dict[tuple[str, str], list[Leg]], junction: str, connection: XmlNode) -> None:
         """A direct junction has no connecting roads: one road leads onto the other, and back."""
         linked, line = connection.text("linkedRoad", ""), self._roads.get(connection.text("incomingRoad", ""))
         if line is None or linked not in self._roads:
@@ -140,11 +140,11 @@ class RoadLinks:
         return None
 
 
-def _led_to(connection: Node) -> str:
+def _led_to(connection: XmlNode) -> str:
     """The connecting road, or the road that a direct junction links."""
     return connection.text("connectingRoad", connection.text("linkedRoad", ""))
 
 
-def _target(line: RoadLine, sense: int) -> Node | None:
+def _target(line: RoadLine, sense: int) -> XmlNode | None:
     link = line.node.find("link")
     return link.find("successor" if sense > 0 else "predecessor") if link else None

@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose, angle_between
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.opendrive.geometry import Pose
+from sgcad_core.formats.openscenario.playing.timed_motion import angle_between
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 from sgcad_core.formats.openscenario.roads.road_lines import DRIVABLE, RoadLine
 from sgcad_core.formats.openscenario.roads.road_links import Leg, RoadLinks, Step
 from sgcad_core.formats.openscenario.roads.way import LanePlace, Route, Way, way_of
@@ -28,7 +29,7 @@ _TURNED_RAD = 1.3
 """A lane that points farther away than this from the entity's heading is not its lane."""
 
 
-class Apart(NamedTuple):
+class RoadDistance(NamedTuple):
     """How far a place lies from another along the roads: ahead (behind: negative) and to the left, metres."""
 
     ahead_m: float
@@ -42,14 +43,15 @@ def roads_of(xodr: str) -> XodrRoads:
 
 
 class XodrRoads:
-    """Implements `scene.Roads` for a .xodr, read when first asked. Raises InvalidOutput where it is none."""
+    """The roads of a .xodr, read at the first question. Unknown roads, lanes and places raise ValueErrors that say what
+    there is instead; what is no OpenDRIVE raises InvalidOutput."""
 
     def __init__(self, xodr: str) -> None:
         self._xodr = xodr
 
     @cached_property
-    def _root(self) -> Node:
-        root = Node(parse_xml(self._xodr, "xodr"), {})
+    def _root(self) -> XmlNode:
+        root = XmlNode(parse_xml(self._xodr, "xodr"), {})
         if root.tag != "OpenDRIVE":
             raise root.fault("no OpenDRIVE file", remedy="the root element is <OpenDRIVE>")
         return root
@@ -188,16 +190,16 @@ class XodrRoads:
             legs[-1:], here = found, place
         return Route(tuple(legs), tuple(self._roads[leg.road].length_m for leg in legs), first.s_m)
 
-    def apart(self, first: LanePlace, sense: int, second: LanePlace) -> Apart | None:
+    def apart(self, first: LanePlace, sense: int, second: LanePlace) -> RoadDistance | None:
         """Where the second place lies as seen along the roads from the first; None where no road leads there."""
         t, t2, line = self.t_of(first), self.t_of(second), self.road(first.road)
         if first.road == second.road:
-            return Apart((second.s_m - first.s_m) * sense, (t2 - t) * sense)
+            return RoadDistance((second.s_m - first.s_m) * sense, (t2 - t) * sense)
         options = []
         for way in (1, -1):
             ahead = (line.length_m - first.s_m) if sense * way > 0 else first.s_m
             if found := self._links.path(Leg(first.road, sense * way), ahead, self._goals(second)):
-                options.append(Apart(way * found[1], t2 * found[0][-1].sense * way - t * sense))
+                options.append(RoadDistance(way * found[1], t2 * found[0][-1].sense * way - t * sense))
         return min(options, key=lambda option: abs(option.ahead_m), default=None)
 
     # -------------------------------------------------------------- inside

@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.families import Family
 from sgcad_core.formats.openscenario.playing.positions import has_heading, position, rolls_of
 from sgcad_core.formats.openscenario.playing.scene import Scene
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 from sgcad_core.geometry.plane import Floats, arc_lengths
 
 STEP_M = 0.25
@@ -24,7 +24,7 @@ MAX_ORDER = 10
 
 
 class Line(NamedTuple):
-    """A trajectory's vertices now: points (n, 2), headings where stated, times where stated, roll where it is told."""
+    """A trajectory's vertices now: points (n, 2), headings where stated, times where stated, roll where stated."""
 
     points: Floats
     headings: Floats | None
@@ -38,7 +38,7 @@ SHAPES: Family[Drawn] = Family("trajectory shape")
 
 
 @SHAPES.plays("Polyline")
-def _polyline(shape: Node) -> Drawn:
+def _polyline(shape: XmlNode) -> Drawn:
     vertices = shape.children("Vertex")
     if not 2 <= len(vertices) <= MAX_VERTICES:
         raise shape.fault("a polyline needs 2 to 50000 vertices", str(len(vertices)))
@@ -57,7 +57,7 @@ def _polyline(shape: Node) -> Drawn:
 
 
 @SHAPES.plays("Clothoid")
-def _clothoid(shape: Node) -> Drawn:
+def _clothoid(shape: XmlNode) -> Drawn:
     """Curvature rises evenly with the length; 1.0 says curvatureDot, later versions curvaturePrime."""
     rate = shape.number("curvaturePrime" if shape.has("curvaturePrime") else "curvatureDot")
     first, length = shape.number("curvature"), shape.positive("length")
@@ -73,7 +73,7 @@ def _clothoid(shape: Node) -> Drawn:
 
 
 @SHAPES.plays("ClothoidSpline")
-def _clothoid_spline(shape: Node) -> Drawn:
+def _clothoid_spline(shape: XmlNode) -> Drawn:
     """Segments in a row; one without <PositionStart> begins where the one before ends, the first at the actor."""
     segments = shape.children("ClothoidSplineSegment")
     if not segments:
@@ -96,7 +96,7 @@ def _clothoid_spline(shape: Node) -> Drawn:
     return drawn
 
 
-def _segment(node: Node) -> tuple[Callable[[Scene], Pose] | None, float, tuple[float, float, float]]:
+def _segment(node: XmlNode) -> tuple[Callable[[Scene], Pose] | None, float, tuple[float, float, float]]:
     where = node.find("PositionStart")
     start = position(where) if where else None
     curve = node.number("curvatureStart"), node.number("curvatureEnd"), node.number("length")
@@ -115,7 +115,7 @@ def _curve(start: Pose, first: float, last: float, length_m: float) -> Floats:
 
 
 @SHAPES.plays("Nurbs", remark="times of control points are a coordinate of the curve")
-def _nurbs(shape: Node) -> Drawn:
+def _nurbs(shape: XmlNode) -> Drawn:
     controls, order = shape.children("ControlPoint"), shape.whole("order")
     knots = np.array([k.number("value") for k in shape.children("Knot")])
     if not (2 <= order <= MAX_ORDER and order <= len(controls) <= MAX_VERTICES):
@@ -156,6 +156,6 @@ def _de_boor(u: float, order: int, knots: Floats, controls: Floats) -> Floats:
     return last
 
 
-def _bounded(shape: Node, length_m: float) -> None:
+def _bounded(shape: XmlNode, length_m: float) -> None:
     if length_m / STEP_M > MAX_VERTICES:
         raise shape.fault(f"longer than {MAX_VERTICES * STEP_M:g} m", f"{length_m:g}", "shorten the trajectory")

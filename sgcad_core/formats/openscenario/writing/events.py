@@ -1,10 +1,10 @@
-"""A plan as maneuver events, for people who edit by hand and for players that hand over: the second encoding.
+"""A plan as maneuver events, for editing by hand and for players that hand over: the second encoding.
 
-Who drives along lanes is told by them: a route over junctions, a change of lane or of the offset in it; others follow
+Motion along lanes is written as a route over junctions and a change of lane or lane offset; other actors follow
 an untimed trajectory at their own speed. Speeds are few even changes. Each event starts where the others are or where
-its actor is, not by the clock, as far as that is certain; the last piece of one of the two who meet is a meeting with
+its actor is, not by the clock, as far as that is certain; the last piece of one of the two in contact is a meeting with
 the other (SynchronizeAction). Both brake once they touch; the others do what was planned to the end. Places follow from
-that: they are near the plan's until the contact, and not told behind it.
+that: they are near the plan's until the contact, and free after it.
 """
 
 from __future__ import annotations
@@ -23,30 +23,37 @@ from sgcad_core.case.records import Floats, ObservedContact, Trajectory
 from sgcad_core.formats.openscenario.roads.lane_motion import LaneMotion, Shift, lane_motion, start_place
 from sgcad_core.formats.openscenario.roads.road_network import roads_of
 from sgcad_core.formats.openscenario.roads.way import LanePlace
-from sgcad_core.formats.openscenario.writing.occasions import Occasions
+from sgcad_core.formats.openscenario.writing.occasions import EventTriggers
 from sgcad_core.formats.openscenario.writing.pacing import pieces
-from sgcad_core.formats.openscenario.writing.parts import Happening, at_once, group, number, positions, world_position
-from sgcad_core.formats.openscenario.writing.synchrony import Synchrony, synchrony
+from sgcad_core.formats.openscenario.writing.parts import (
+    PlannedEvent,
+    at_once,
+    group,
+    positions,
+    rounded,
+    world_position,
+)
+from sgcad_core.formats.openscenario.writing.synchrony import Meeting, meeting_of
 from sgcad_core.formats.openscenario.writing.vertices import path_rows
 from sgcad_core.geometry.plane import arc_lengths, wrap_angle
 
 BRAKE_MPS2 = 6.0
-"""Of who has been in the contact."""
+"""Deceleration of both actors after the contact."""
 ONWARD_M = 100.0
-"""How far the path leads straight on behind the contact, should it come late: more than anybody needs to brake."""
+"""Length of the straight path after the contact, should it come late: more than braking needs."""
 STANDS_M = 0.2
-"""Who goes less far than this before the contact stands."""
+"""An actor that moves less than this before the contact stands."""
 STRAIGHT_RAD = 0.02
-"""A meeting is told of ways that turn by less: players count distances in bends each in their own way."""
+"""Largest turn of ways with a meeting: players measure distances in bends differently."""
 _STEADY_MPS = 0.02
 
 
 @dataclass(frozen=True)
-class Plainly:
-    """What is told in plainer words than it could be, because a trial went astray: see `execution.editable`."""
+class Fallbacks:
+    """Simpler encodings after a failed trial: see `execution.event_encoding`."""
 
     paths: frozenset[str] = frozenset()
-    """Whose way is a trajectory though lanes might tell it."""
+    """Actors whose way is a trajectory though lanes could express it."""
     alone: bool = False
     """Without SynchronizeAction."""
     clock: bool = False
@@ -54,30 +61,30 @@ class Plainly:
 
 
 @dataclass(frozen=True)
-class Handover:
-    """What events need to know beside the motions: the contact that ends the plan, and the road (.xodr text)."""
+class EventOptions:
+    """Inputs of events beside the motions: the contact that ends the plan, and the road (.xodr text)."""
 
     contact: ObservedContact | None = None
     xodr: str | None = None
-    plainly: Plainly = Plainly()
+    plainly: Fallbacks = Fallbacks()
 
 
 @dataclass(frozen=True)
 class EventActor:
-    """One actor as events: its origin's motion up to where it is told, and how it is placed and led."""
+    """One actor as events: its origin's motion up to the end of the plan, its placement and its route."""
 
     move: Trajectory
     ahead_m: float
     partner: str
-    """Whom it meets in the contact, or empty."""
+    """The other actor of the contact, or empty."""
     place: LanePlace | None
     """Its start in lane coordinates, where it lies in a lane."""
     turn_rad: float
     """Its heading against the lane's driving direction."""
     lanes: LaneMotion | None
     """Its way by lanes, where lanes tell it."""
-    occasions: Occasions
-    meeting: Synchrony | None = None
+    occasions: EventTriggers
+    meeting: Meeting | None = None
     """Its last piece of speed, where that is a meeting."""
 
     @property
@@ -114,11 +121,11 @@ class EventActor:
         """Where it begins, as a place in a lane if there is one."""
         if self.place is None:
             return world_position(self.move.x_m[0], self.move.y_m[0], wrap_angle(self.move.heading_rad[0]))
-        turned = 0.0 if self.lanes else number(self.turn_rad, 8)
+        turned = 0.0 if self.lanes else rounded(self.turn_rad, 8)
         return _in_lane(self.place, xosc.Orientation(h=turned, reference=xosc.ReferenceContext.relative))
 
     def init_actions(self) -> Iterator[object]:
-        """What else it is told at the start: the route, where its lanes lead over a junction."""
+        """Further Init actions: the route, where its lanes lead over a junction."""
         if self.lanes and self.lanes.route:
             route = xosc.Route(f"{self.move.actor}_route")
             for place in self.lanes.route:
@@ -131,33 +138,33 @@ class EventActor:
         return float(self.knots[1][0])
 
     def group(self) -> xosc.ManeuverGroup:
-        """Its events; who has nothing to do keeps its speed."""
+        """Its events; an actor without any keeps its speed."""
         maneuvers = {"path": list(self._way()), "speed": [*self._speeds(), *self._meets(), *self._brake()]}
         if not any(maneuvers.values()):
             maneuvers["speed"] = [self._stays()]
         return group(self.move.actor, {f"{self.move.actor}_{name}": told for name, told in maneuvers.items() if told})
 
-    def _way(self) -> Iterator[Happening]:
+    def _way(self) -> Iterator[PlannedEvent]:
         if self.lanes and self.lanes.shift:
             yield self._shifts(self.lanes.shift)
         elif not self.stands and self.lanes is None:
             yield self._path()
 
-    def _shifts(self, shift: Shift) -> Happening:
+    def _shifts(self, shift: Shift) -> PlannedEvent:
         """Into another lane, or to another offset in its own."""
         name = self.move.actor
         if shift.lanes:
             over = xosc.TransitionDynamics(
-                getattr(xosc.DynamicsShapes, shift.shape), xosc.DynamicsDimension.time, number(shift.span_s, 3)
+                getattr(xosc.DynamicsShapes, shift.shape), xosc.DynamicsDimension.time, rounded(shift.span_s, 3)
             )
-            does: object = xosc.RelativeLaneChangeAction(shift.lanes, name, over, number(shift.offset_m, 3))
+            does: object = xosc.RelativeLaneChangeAction(shift.lanes, name, over, rounded(shift.offset_m, 3))
         else:
             shape = getattr(xosc.DynamicsShapes, shift.shape)
             does = xosc.AbsoluteLaneOffsetAction(
-                number(shift.offset_m, 3), shape, number(shift.lateral_mps2, 4), continuous=False
+                rounded(shift.offset_m, 3), shape, rounded(shift.lateral_mps2, 4), continuous=False
             )
         when = self._from_place(f"{name}_there", shift)
-        return Happening(f"{name}_shifts", f"{name}_aside", when, does)
+        return PlannedEvent(f"{name}_shifts", f"{name}_aside", when, does)
 
     def _from_place(self, name: str, shift: Shift) -> xosc.ValueTrigger | xosc.EntityTrigger:
         if shift.ahead is None:
@@ -165,14 +172,16 @@ class EventActor:
         place, x, y = shift.ahead
         return self.occasions.place(name, self.move.actor, shift.row, (x, y), _in_lane(place))
 
-    def _path(self) -> Happening:
+    def _path(self) -> PlannedEvent:
         path, name = xosc.Trajectory(f"{self.move.actor}_path", False), self.move.actor
         line = self._onward() if self.partner else self.move
         rows = path_rows(line, self.ahead_m)
-        times = [number(line.t_s[k]) for k in rows] if VersionBase().isVersion(minor=0) else []  # its schema wants them
+        times = (
+            [rounded(line.t_s[k]) for k in rows] if VersionBase().isVersion(minor=0) else []
+        )  # its schema wants them
         path.add_shape(xosc.Polyline(times, positions(line, rows)))
         follow = xosc.FollowTrajectoryAction(path, xosc.FollowingMode.position)
-        return Happening(f"{name}_drives", f"{name}_follow", at_once(f"{name}_start"), follow)
+        return PlannedEvent(f"{name}_drives", f"{name}_follow", at_once(f"{name}_start"), follow)
 
     def _onward(self) -> Trajectory:
         """The motion with a straight way ahead, in the direction in which it last went."""
@@ -187,7 +196,7 @@ class EventActor:
             update={name: np.append(getattr(self.move, name), value) for name, value in ends.items()}
         )
 
-    def _speeds(self) -> Iterator[Happening]:
+    def _speeds(self) -> Iterator[PlannedEvent]:
         name = self.move.actor
         until_s = self.meeting.begin_s - 1e-6 if self.meeting else math.inf
         changes = [
@@ -196,38 +205,38 @@ class EventActor:
             if abs(end[1] - begin[1]) > _STEADY_MPS and begin[0] < until_s
         ]
         for k, ((begin_s, _), (end_s, speed)) in enumerate(changes, 1):
-            action = xosc.AbsoluteSpeedAction(number(speed), _evenly(xosc.DynamicsDimension.time, end_s - begin_s))
+            action = xosc.AbsoluteSpeedAction(rounded(speed), _evenly(xosc.DynamicsDimension.time, end_s - begin_s))
             begin = self.occasions.at(f"{name}_at_{k}", name, begin_s)
-            yield Happening(f"{name}_speed_{k}", f"{name}_to_{k}", begin, action)
+            yield PlannedEvent(f"{name}_speed_{k}", f"{name}_to_{k}", begin, action)
 
-    def _meets(self) -> Iterator[Happening]:
+    def _meets(self) -> Iterator[PlannedEvent]:
         if (meeting := self.meeting) is None:
             return
         name = self.move.actor
         does = xosc.SynchronizeAction(meeting.master, _in_lane(meeting.there), _in_lane(meeting.here))
         when = self.occasions.at(f"{name}_in_time", name, meeting.begin_s)
-        yield Happening(f"{name}_meets", f"{name}_with_{meeting.master}", when, does)
+        yield PlannedEvent(f"{name}_meets", f"{name}_with_{meeting.master}", when, does)
 
-    def _stays(self) -> Happening:
+    def _stays(self) -> PlannedEvent:
         name = self.move.actor
-        action = xosc.AbsoluteSpeedAction(number(self.first_mps), _evenly(xosc.DynamicsDimension.time, 0.1))
-        return Happening(f"{name}_stays", f"{name}_keep", at_once(f"{name}_start"), action)
+        action = xosc.AbsoluteSpeedAction(rounded(self.first_mps), _evenly(xosc.DynamicsDimension.time, 0.1))
+        return PlannedEvent(f"{name}_stays", f"{name}_keep", at_once(f"{name}_start"), action)
 
-    def _brake(self) -> Iterator[Happening]:
+    def _brake(self) -> Iterator[PlannedEvent]:
         if not self.partner:
             return
         name, touched = self.move.actor, xosc.CollisionCondition(self.partner)
         begin = xosc.EntityTrigger(f"{name}_touched", 0.0, xosc.ConditionEdge.none, touched, name)
         stop = xosc.AbsoluteSpeedAction(0.0, _evenly(xosc.DynamicsDimension.rate, BRAKE_MPS2))
-        yield Happening(f"{name}_stops", f"{name}_brake", begin, stop)
+        yield PlannedEvent(f"{name}_stops", f"{name}_brake", begin, stop)
 
 
-def event_actors(moves: Sequence[Trajectory], ahead_m: Sequence[float], handover: Handover) -> list[EventActor]:
+def event_actors(moves: Sequence[Trajectory], ahead_m: Sequence[float], handover: EventOptions) -> list[EventActor]:
     """The motions of origins as events, in their order."""
     roads = roads_of(handover.xodr) if handover.xodr else None
     contact, plainly = handover.contact, handover.plainly
     pair = {contact.actor: contact.other, contact.other: contact.actor} if contact else {}
-    occasions = Occasions({move.actor: move for move in moves}, pair, plainly.clock)
+    occasions = EventTriggers({move.actor: move for move in moves}, pair, plainly.clock)
     made = []
     for move, ahead in zip(moves, ahead_m, strict=True):
         partner = pair.get(move.actor, "")
@@ -240,12 +249,12 @@ def event_actors(moves: Sequence[Trajectory], ahead_m: Sequence[float], handover
 
 
 def _met(actors: Mapping[str, EventActor]) -> list[EventActor]:
-    """The actors, the first of the pair that can do so meeting the other; who comes first in the report leads."""
+    """The actors, the first of the pair that can meet the other doing so; the report's first actor is the master."""
     for name in sorted((name for name, actor in actors.items() if actor.partner), reverse=True):
         mine, master = actors[name], actors[actors[name].partner]
         if not (mine.lanes and master.lanes):
             continue
-        found = synchrony((mine.knots, mine.lanes.end), (master.move.actor, master.knots, master.lanes.end))
+        found = meeting_of((mine.knots, mine.lanes.end), (master.move.actor, master.knots, master.lanes.end))
         if found and mine.straight_from(found.begin_s) and master.straight_from(found.begin_s):
             return list({**actors, name: replace(mine, meeting=found)}.values())
     return list(actors.values())
@@ -257,11 +266,11 @@ def _stands(move: Trajectory) -> bool:
 
 def _in_lane(place: LanePlace, facing: xosc.Orientation | None = None) -> xosc.LanePosition:
     turned = facing or xosc.Orientation()
-    return xosc.LanePosition(number(place.s_m), number(place.offset_m), str(place.lane), place.road, turned)
+    return xosc.LanePosition(rounded(place.s_m), rounded(place.offset_m), str(place.lane), place.road, turned)
 
 
 def _evenly(dimension: xosc.DynamicsDimension, value: float) -> xosc.TransitionDynamics:
-    return xosc.TransitionDynamics(xosc.DynamicsShapes.linear, dimension, number(value))
+    return xosc.TransitionDynamics(xosc.DynamicsShapes.linear, dimension, rounded(value))
 
 
 def _until(move: Trajectory, end_s: float) -> Trajectory:

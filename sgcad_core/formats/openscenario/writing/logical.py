@@ -25,7 +25,7 @@ _HEADER = {"revMajor": "1", "revMinor": "2", "date": "2000-01-01T00:00:00+00:00"
 _XSI = "http://www.w3.org/2001/XMLSchema-instance"
 
 
-class Range(NamedTuple):
+class ParameterRange(NamedTuple):
     """A parameter of the file: its distribution and limits. `spread` 0: uniform over the limits, or over `values`."""
 
     name: str
@@ -39,7 +39,7 @@ class Range(NamedTuple):
     """Of a choice: its values and their probabilities."""
 
 
-class Warp(NamedTuple):
+class TimeShift(NamedTuple):
     """Times of vertices that move with a parameter d: t + d * (linear + d * (square + d * cube)), over (n,) times."""
 
     name: str
@@ -49,7 +49,7 @@ class Warp(NamedTuple):
     cube: Floats
 
 
-class Meets(NamedTuple):
+class ParameterizedActor(NamedTuple):
     """An actor whose motion has parameters, and when its line's own clock comes to the contact."""
 
     actor: str
@@ -58,10 +58,12 @@ class Meets(NamedTuple):
     """Parameters that are metres to the left, beside `<actor>_aside_m`."""
     further: tuple[tuple[str, float], ...] = ()
     """(parameter, seconds): so much later on its line's clock the contact comes for each unit of the parameter."""
-    warp: Warp | None = None
+    warp: TimeShift | None = None
 
 
-def logical_xosc(xosc: str, ranges: Sequence[Range], meets: Sequence[Meets], contact_s: float) -> str:
+def logical_xosc(
+    xosc: str, ranges: Sequence[ParameterRange], meets: Sequence[ParameterizedActor], contact_s: float
+) -> str:
     """A timed scenario with its parameters. `contact_s`: when the pair meets on the file's clock at nominal values.
 
     Raises InvalidOutput for a file without timed trajectories.
@@ -78,7 +80,7 @@ def logical_xosc(xosc: str, ranges: Sequence[Range], meets: Sequence[Meets], con
     return _text(root)
 
 
-def _declare(root: etree._Element, ranges: Sequence[Range]) -> None:
+def _declare(root: etree._Element, ranges: Sequence[ParameterRange]) -> None:
     holder = root.find("ParameterDeclarations")
     if holder is None:
         raise InvalidOutput("the scenario has no ParameterDeclarations: write it anew")
@@ -91,7 +93,7 @@ def _declare(root: etree._Element, ranges: Sequence[Range]) -> None:
         etree.SubElement(group, "ValueConstraint", rule="lessOrEqual", value=_number(r.high))
 
 
-def _move(root: etree._Element, one: Meets, contact_s: float, known: set[str]) -> None:
+def _move(root: etree._Element, one: ParameterizedActor, contact_s: float, known: set[str]) -> None:
     """Time and place of an actor's trajectory: t' = t / pace + offset with the contact kept where it is."""
     actor = one.actor
     group = next((g for g in root.iter("ManeuverGroup") if _acts(g, actor)), None)
@@ -111,7 +113,7 @@ def _move(root: etree._Element, one: Meets, contact_s: float, known: set[str]) -
         _beside(place, aside[0] if len(aside) == 1 else f"({' + '.join(aside)})")
 
 
-def _delay(group: etree._Element, warp: Warp) -> None:
+def _delay(group: etree._Element, warp: TimeShift) -> None:
     """Vertices of a trajectory at times that move with a parameter."""
     for vertex in group.iter("Vertex"):
         t = float(vertex.get("time", "0"))
@@ -120,7 +122,7 @@ def _delay(group: etree._Element, warp: Warp) -> None:
         vertex.set("time", f"${{{_number(t)} + {d} * ({linear} + {d} * ({square} + {d} * {cube}))}}")
 
 
-def suns(xosc: str, parameter: str, suns_of: Sequence[tuple[float, float, float]]) -> str:
+def with_sun_parameter(xosc: str, parameter: str, suns_of: Sequence[tuple[float, float, float]]) -> str:
     """A scenario whose sun (illuminance, azimuth, elevation) is one of several, by a parameter that counts them from 0.
 
     The time of day, which no expression can tell, is taken out. Raises InvalidOutput where there is no sun.
@@ -173,7 +175,7 @@ def _resize(root: etree._Element, actor: str, known: set[str]) -> None:
 
 
 # ------------------------------------------------------------------ distributions
-def deterministic(scenario: str, sets: Sequence[Mapping[str, float]]) -> str:
+def deterministic_distribution(scenario: str, sets: Sequence[Mapping[str, float]]) -> str:
     """A file that lists parameter sets."""
     root, holder = _distribution(scenario)
     values = etree.SubElement(
@@ -187,8 +189,8 @@ def deterministic(scenario: str, sets: Sequence[Mapping[str, float]]) -> str:
     return _text(root)
 
 
-def stochastic(scenario: str, ranges: Sequence[Range], count: int, seed: int) -> str:
-    """A file that says how parameters are drawn (normal ones are cut to their limits by who draws)."""
+def stochastic_distribution(scenario: str, ranges: Sequence[ParameterRange], count: int, seed: int) -> str:
+    """A file with the parameters' distributions (the player cuts normal ones to their limits)."""
     root, holder = _distribution(scenario)
     drawn = etree.SubElement(holder, "Stochastic", numberOfTestRuns=str(count), randomSeed=str(seed))
     for r in ranges:

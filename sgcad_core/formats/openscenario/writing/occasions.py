@@ -1,6 +1,6 @@
-"""What starts an event of a plan: a condition that people can move, true from the planned step on and not before.
+"""Start conditions of a plan's events: editable conditions that hold from the planned step on and not before.
 
-Of who meets somebody, how near the other is; of others, how far they have gone; of who stands and waits for nobody, the
+For an actor in the contact the distance to the other; for others the distance traveled; for standing actors the
 clock. Thresholds lie between two steps of the plan, so that players which move a little otherwise fire at the same one.
 """
 
@@ -14,7 +14,7 @@ from scenariogeneration import xosc
 from scenariogeneration.xosc.enumerations import VersionBase
 
 from sgcad_core.case.records import Trajectory
-from sgcad_core.formats.openscenario.writing.parts import at_once, from_time, number
+from sgcad_core.formats.openscenario.writing.parts import at_once, from_time, rounded
 from sgcad_core.geometry.plane import Floats, arc_lengths
 
 NEARER_M = 0.1
@@ -24,8 +24,8 @@ GONE_M = 0.05
 
 
 @dataclass(frozen=True)
-class Occasions:
-    """The motions of all origins to the end, and who meets whom in the contact."""
+class EventTriggers:
+    """The motions of all origins to the end, and the partners of the contact."""
 
     moves: Mapping[str, Trajectory]
     partners: Mapping[str, str]
@@ -88,7 +88,7 @@ def between(low: float, high: float) -> float:
     for digits in range(6):
         if low + (high - low) / 4 < (told := round(middle, digits)) < high - (high - low) / 4:
             return told
-    return number(middle)
+    return rounded(middle)
 
 
 def _falls(gap_m: Floats, row: int, least_m: float) -> bool:

@@ -14,7 +14,7 @@ from sgcad_core.case.records import Floats
 NEAR_M = 0.03
 """How far along the path the pieces may lead beside the motion."""
 SHORTEST = 3
-"""Rows of the shortest piece, 0.05 s each: shorter ones nobody edits."""
+"""Rows of the shortest piece, 0.05 s each: shorter ones are of no use to an editor."""
 MOVED = 2
 """Rows by which a new knot may lie beside the bend that asked for it: differences smear bends over their neighbors."""
 STILL_MPS = 0.02

@@ -16,7 +16,7 @@ CrossSection = tuple[float, float]
 """Width and height of a body, metres."""
 
 
-class Happening(NamedTuple):
+class PlannedEvent(NamedTuple):
     """One event: names, what starts it, what it does."""
 
     name: str
@@ -25,14 +25,14 @@ class Happening(NamedTuple):
     does: object
 
 
-def number(value: float | Floats, digits: int = 6) -> float:
+def rounded(value: float | Floats, digits: int = 6) -> float:
     """A number as it is written; never -0.0."""
     return round(float(value), digits) + 0.0
 
 
 def world_position(x_m: float, y_m: float, heading_rad: float | Floats) -> xosc.WorldPosition:
     """A pose on flat ground."""
-    return xosc.WorldPosition(number(x_m), number(y_m), 0.0, number(heading_rad, 8))
+    return xosc.WorldPosition(rounded(x_m), rounded(y_m), 0.0, rounded(heading_rad, 8))
 
 
 def positions(move: Trajectory, rows: Sequence[int], size: CrossSection = (0.0, 0.0)) -> list[xosc.WorldPosition]:
@@ -42,7 +42,7 @@ def positions(move: Trajectory, rows: Sequence[int], size: CrossSection = (0.0, 
     if move.roll_rad is not None:
         for place, k in zip(places, rows, strict=True):
             roll = float(move.roll_rad[k])
-            place.z, place.p, place.r = number(_lift_m(roll, size)), 0.0, number(roll, 8)
+            place.z, place.p, place.r = rounded(_lift_m(roll, size)), 0.0, rounded(roll, 8)
     return places
 
 
@@ -61,8 +61,8 @@ def at_once(name: str) -> xosc.ValueTrigger:
 def from_time(name: str, time_s: float) -> xosc.ValueTrigger:
     """From a time on, that instant included; version 1.0 has no "or equal" and gets a little less (at 0: -1)."""
     if VersionBase().isVersion(minor=0):
-        return at_time(name, number(time_s - 1e-3) if time_s else -1.0, xosc.Rule.greaterThan, "start")
-    return at_time(name, number(time_s), xosc.Rule.greaterOrEqual, "start")
+        return at_time(name, rounded(time_s - 1e-3) if time_s else -1.0, xosc.Rule.greaterThan, "start")
+    return at_time(name, rounded(time_s), xosc.Rule.greaterOrEqual, "start")
 
 
 def at_time(name: str, time_s: float | str, rule: xosc.Rule, point: str) -> xosc.ValueTrigger:
@@ -71,7 +71,7 @@ def at_time(name: str, time_s: float | str, rule: xosc.Rule, point: str) -> xosc
     return xosc.ValueTrigger(name, 0.0, xosc.ConditionEdge.none, condition, triggeringpoint=point)
 
 
-def group(actor: str, maneuvers: Mapping[str, Sequence[Happening]]) -> xosc.ManeuverGroup:
+def group(actor: str, maneuvers: Mapping[str, Sequence[PlannedEvent]]) -> xosc.ManeuverGroup:
     """What one actor does: events by maneuver; within one maneuver a later event ends an earlier one."""
     before = VersionBase().isVersionEqLess(minor=1)
     made = xosc.ManeuverGroup(f"{actor}_group")

@@ -1,7 +1,7 @@
 """The last piece of a plan as a meeting: one actor chooses its speed so that it is in its place when the other is.
 
 That is the plan where the other drives at an even speed from there on, since the one then speeds up or slows down
-evenly. Who edits the other's approach, or drives it, still gets the meeting. Knows no XML.
+evenly. The meeting also holds where the other's approach is edited or driven. Knows no XML.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from sgcad_core.formats.openscenario.roads.way import LanePlace
 EVEN = 0.005
 """Share of the master's speed by which it may still change: the meeting is reckoned with the speed that it has."""
 FIRST_S = 0.5
-"""Earliest beginning: esmini knows no speed of the master in the first step and stops who meets it."""
+"""Earliest beginning: esmini has no speed of the master in the first step and stops the other actor."""
 LEAST_S = 1.0
 """Shortest meeting: shorter ones leave nothing to edit."""
 MOVES_MPS = 2.0
-"""Who is slower at the meeting has no time of arrival that could be met."""
+"""Least speed at the meeting: a slower actor has no definite time of arrival."""
 Knots = tuple[Floats, Floats]
 
 
-class Synchrony(NamedTuple):
-    """From when on whom to meet, and the places of both at the meeting."""
+class Meeting(NamedTuple):
+    """Begin, master, and the places of both at the meeting."""
 
     begin_s: float
     master: str
@@ -34,14 +34,14 @@ class Synchrony(NamedTuple):
     here: LanePlace
 
 
-def synchrony(mine: tuple[Knots, LanePlace], master: tuple[str, Knots, LanePlace]) -> Synchrony | None:
+def meeting_of(mine: tuple[Knots, LanePlace], master: tuple[str, Knots, LanePlace]) -> Meeting | None:
     """How one meets a master (name, times and speeds of its pieces, place at the end); None where it cannot."""
     (times, speeds), here = mine
     name, knots, there = master
     begin_s = max(float(times[-2]), _even_from(knots), FIRST_S)
     if float(times[-1]) - begin_s < LEAST_S or min(speeds[-1], knots[1][-1], _speed(mine[0], begin_s)) < MOVES_MPS:
         return None
-    return Synchrony(begin_s, name, there, here)
+    return Meeting(begin_s, name, there, here)
 
 
 def _even_from(knots: Knots) -> float:

@@ -27,7 +27,7 @@ TURN_RAD = (-0.11, 0.8)
 NEAREST = 8
 """How many rows before one are tried as its neighbor."""
 _TOGETHER = 64
-"""Rows whose distances to all before them are told in one computation."""
+"""Rows whose distances to all earlier ones are computed together."""
 STAND_S = 1.0 + 1e-3
 """Shortest standstill between two motions that a player keeps as such."""
 BLOW_M = 0.075
@@ -53,8 +53,8 @@ def vertex_rows(move: Trajectory, ahead_m: float = 0.0) -> list[int]:
     return rows
 
 
-def settled(move: Trajectory) -> Trajectory:
-    """The motion of whom a blow hardly moves from where it stands: it stays there.
+def held_at_standstill(move: Trajectory) -> Trajectory:
+    """The motion of an actor that an impact hardly moves from its standstill, without that movement.
 
     Of a standstill and so small a motion behind it to the end, esmini keeps the first and the last vertex only, and
     creeps between them from the start on.

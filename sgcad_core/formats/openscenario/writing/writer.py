@@ -22,17 +22,17 @@ from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.opendrive.signals import Controller
 from sgcad_core.formats.openscenario.writing.entities import center_ahead_m, entity, environment
-from sgcad_core.formats.openscenario.writing.events import EventActor, Handover, event_actors
+from sgcad_core.formats.openscenario.writing.events import EventActor, EventOptions, event_actors
 from sgcad_core.formats.openscenario.writing.parts import (
     CrossSection,
-    Happening,
+    PlannedEvent,
     at_once,
     at_time,
     group,
-    number,
     positions,
+    rounded,
 )
-from sgcad_core.formats.openscenario.writing.vertices import settled, vertex_rows
+from sgcad_core.formats.openscenario.writing.vertices import held_at_standstill, vertex_rows
 from sgcad_core.records.specs import BehaviorSpec
 
 Version = Literal["1.0", "1.1", "1.2", "1.3"]
@@ -55,23 +55,23 @@ def write_xosc(
     road_file: str = "road.xodr",
     name: str = "crash",
     version: Version = DEFAULT_VERSION,
-    handover: Handover | None = None,
+    handover: EventOptions | None = None,
     signals: Sequence[Controller] = (),
 ) -> str:
     """An .xosc that moves each actor's box center along its trajectory (positions to 1e-6 m, headings 1e-8 rad).
 
     What the file holds are the entities' origins, for vehicles the rear axle; trajectories are those of box centers.
-    One trajectory an actor, at least two rows, times rising from 0. Raises InvalidOutput otherwise. The versions
-    differ in names and in what surroundings they can tell; the motion is the same. With a `handover` the plan is told
-    as maneuver events instead (`events`): near the trajectories until the contact, free behind it. `signals`: what the
-    map's controllers show in turn from the start on.
+    One trajectory per actor, at least two rows, times rising from 0. Raises InvalidOutput otherwise. The versions
+    differ in names and in the surroundings they can express; the motion is the same. With a `handover` the plan is
+    written as maneuver events (`events`): near the trajectories until the contact, free after it. `signals`: the states
+    of the map's controllers in turn, from the start on.
     """
     moves = [origin_motion(actor, t) for actor, t in zip(actors, _paired(actors, trajectories), strict=True)]
     minor, reaches = int(version[-1]), [center_ahead_m(actor) for actor in actors]
     sizes = [(actor.width_m, actor.record.height_m) for actor in actors]
-    timed = [_Timed(settled(m), ahead, size) for m, ahead, size in zip(moves, reaches, sizes, strict=True)]
+    timed = [_Timed(held_at_standstill(m), ahead, size) for m, ahead, size in zip(moves, reaches, sizes, strict=True)]
     told = timed if handover is None else None
-    parts = told or event_actors(moves, reaches, handover or Handover())
+    parts = told or event_actors(moves, reaches, handover or EventOptions())
     with _WRITING:
         VersionBase().setVersion(minor=minor)
         scenario = xosc.Scenario(
@@ -96,7 +96,7 @@ def _road_network(road_file: str, signals: Sequence[Controller]) -> xosc.RoadNet
     for controller in signals:
         told = xosc.TrafficSignalController(controller.id)
         for k, shown in enumerate(controller.phases, 1):
-            phase = xosc.Phase(f"{k} {next(iter(shown.states.values()), 'off')}", number(shown.duration_s))
+            phase = xosc.Phase(f"{k} {next(iter(shown.states.values()), 'off')}", rounded(shown.duration_s))
             for head, state in shown.states.items():
                 phase.add_signal_state(head, state)
             told.add_phase(phase)
@@ -105,7 +105,7 @@ def _road_network(road_file: str, signals: Sequence[Controller]) -> xosc.RoadNet
 
 
 def _parameters(moves: Sequence[Trajectory]) -> xosc.ParameterDeclarations:
-    end = number(max(t.t_s[-1] for t in moves))
+    end = rounded(max(t.t_s[-1] for t in moves))
     declared = xosc.ParameterDeclarations()
     declared.add_parameter(xosc.Parameter(END, xosc.ParameterType.double, str(end)))
     return declared
@@ -158,10 +158,10 @@ class _Timed:
     def group(self) -> xosc.ManeuverGroup:
         name, rows = self.move.actor, vertex_rows(self.move, self.ahead_m)
         path = xosc.Trajectory(f"{name}_path", False)
-        path.add_shape(xosc.Polyline([number(self.move.t_s[k]) for k in rows], positions(self.move, rows, self.size)))
+        path.add_shape(xosc.Polyline([rounded(self.move.t_s[k]) for k in rows], positions(self.move, rows, self.size)))
         absolute = xosc.ReferenceContext.absolute
         follow = xosc.FollowTrajectoryAction(path, xosc.FollowingMode.position, absolute, 1.0, 0.0)
-        event = Happening(f"{name}_event", f"{name}_follow", at_once(f"{name}_start"), follow)
+        event = PlannedEvent(f"{name}_event", f"{name}_follow", at_once(f"{name}_start"), follow)
         return group(name, {f"{name}_maneuver": [event]})
 
 
@@ -188,5 +188,5 @@ def _init(actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.En
         init.add_init_action(actor.move.actor, xosc.TeleportAction(actor.start()))
         for action in actor.init_actions():
             init.add_init_action(actor.move.actor, action)
-        init.add_init_action(actor.move.actor, xosc.AbsoluteSpeedAction(number(actor.first_mps), step))
+        init.add_init_action(actor.move.actor, xosc.AbsoluteSpeedAction(rounded(actor.first_mps), step))
     return init

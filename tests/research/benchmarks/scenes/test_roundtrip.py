@@ -3,8 +3,8 @@
 import pytest
 
 from research.benchmarks.scenes.random_roads import random_layout
+from research.benchmarks.scenes.reimport import differences
 from research.benchmarks.scenes.roundtrip import main
-from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from tests.sgcad_core.formats.road_samples import NAMED, compiled

@@ -5,10 +5,17 @@ from __future__ import annotations
 import pytest
 from lxml import etree
 
-from sgcad_core.formats.opendrive.signals import signal_controllers
+from sgcad_core.formats.opendrive.signals import control_of
+from sgcad_core.formats.opendrive.streets import streets
+from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from tests.sgcad_core.formats.road_samples import compiled, star
+
+
+def signal_controllers(net_xml):
+    graph = parse_net(net_xml)
+    return control_of(graph, streets(graph)).controllers
 
 
 def root_of(network):

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from research.benchmarks.scenes.foreign import scenario_files
 from sgcad_core.errors import BadInput, InvalidOutput, Unsupported
-from sgcad_core.formats.openscenario.reading.files import Variation, play_file, scenario_files, variations
+from sgcad_core.formats.openscenario.reading.files import Variation, play_file, variations
 from tests.sgcad_core.formats.openscenario.test_xosc_roads import piece, xodr
 from tests.sgcad_core.formats.xosc_samples import at, entity, event, lane, scenario, speed_action, world
 

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from sgcad_core.errors import InvalidOutput, SgcadError
 from sgcad_core.formats.opendrive.checks.road_index import lane_index
 from sgcad_core.formats.openscenario.playing import player
-from sgcad_core.formats.openscenario.playing.player import perform, play
-from sgcad_core.formats.openscenario.reading.elements import MAX_VALUE_CHARACTERS, Book, read_root
+from sgcad_core.formats.openscenario.playing.player import play, play_scenario
+from sgcad_core.formats.openscenario.reading.elements import MAX_VALUE_CHARACTERS, FileContext, read_root
 from sgcad_core.formats.openscenario.reading.variation import parameter_sets
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
 from tests.sgcad_core.formats.xosc_samples import at, crossroads, event, lane, scenario, when, world
@@ -72,14 +72,14 @@ TAG = re.compile(r"<[A-Z]\w*[^<>]*/>")
 def survives(text, strict):
     started = time.perf_counter()
     with contextlib.suppress(SgcadError):
-        played = perform(read_root(text, book=Book("file.xosc", strict=strict)), ROADS, until_s=5.0)
+        played = play_scenario(read_root(text, book=FileContext("file.xosc", strict=strict)), ROADS, until_s=5.0)
         for motion in played.trajectories:
             assert all(np.isfinite(v).all() for v in (motion.x_m, motion.y_m, motion.heading_rad, motion.speed_mps))
     assert time.perf_counter() - started < 60
 
 
 def test_the_sample_plays_whole():
-    played = perform(read_root(RICH, book=Book("file.xosc")), ROADS, until_s=5.0)
+    played = play_scenario(read_root(RICH, book=FileContext("file.xosc")), ROADS, until_s=5.0)
     assert len(played.trajectories[0].t_s) == 61
     assert any("followingMode 'follow'" in note.what for note in played.notes)
 
@@ -111,7 +111,7 @@ def test_odd_maps_are_no_crash(at_, odd):
     spots = list(VALUES.finditer(text))
     spot = spots[at_ % len(spots)]
     with contextlib.suppress(SgcadError):
-        perform(read_root(RICH), XodrRoads(f'{text[: spot.start()]}="{odd}"{text[spot.end() :]}'), until_s=5.0)
+        play_scenario(read_root(RICH), XodrRoads(f'{text[: spot.start()]}="{odd}"{text[spot.end() :]}'), until_s=5.0)
 
 
 # ------------------------------------------------------------------ bombs

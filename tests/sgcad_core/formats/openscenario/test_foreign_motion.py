@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.player import play
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose, Timed
+from sgcad_core.formats.openscenario.playing.timed_motion import TimedMotion
 from sgcad_core.formats.openscenario.reading.files import play_file, variations
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
 from tests.sgcad_core.formats.xosc_samples import (
@@ -101,7 +102,7 @@ def test_timed_vertices_in_mode_follow_are_met_at_even_accelerations():
 
 def test_who_would_have_to_turn_back_brakes_and_waits():
     times, points = np.array([0.0, 4.0]), np.array([[0.0, 0.0], [5.0, 0.0]])
-    eased = Timed(times, points, np.zeros(2), (0, 0.05)).eased(10.0, 0.05)
+    eased = TimedMotion(times, points, np.zeros(2), (0, 0.05)).eased(10.0, 0.05)
     way = np.array([eased.pose(step).x_m for step in range(81)])
     assert (np.diff(way) >= -1e-12).all()
     assert way[20] == pytest.approx(5.0)  # braked over 5 m from 10 m/s: 1 s

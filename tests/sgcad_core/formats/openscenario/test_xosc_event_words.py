@@ -13,9 +13,9 @@ from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.formats.openscenario.roads.lane_motion import lane_motion
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
 from sgcad_core.formats.openscenario.roads.way import LanePlace
-from sgcad_core.formats.openscenario.writing.events import Handover, Plainly
-from sgcad_core.formats.openscenario.writing.occasions import Occasions, between
-from sgcad_core.formats.openscenario.writing.synchrony import FIRST_S, synchrony
+from sgcad_core.formats.openscenario.writing.events import EventOptions, Fallbacks
+from sgcad_core.formats.openscenario.writing.occasions import EventTriggers, between
+from sgcad_core.formats.openscenario.writing.synchrony import FIRST_S, meeting_of
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
@@ -44,7 +44,7 @@ def northbound(aside_m, speed_mps=12.0):
 
 
 def alone(move):
-    text = write_editable([actor("V1")], [move], None, Handover(None, crossroads().xodr), "1.2")
+    text = write_editable([actor("V1")], [move], None, EventOptions(None, crossroads().xodr), "1.2")
     seen = play(text, crossroads().xodr)[0]
     n = min(len(seen.t_s), len(move.t_s))
     assert np.hypot(seen.x_m[:n] - move.x_m[:n], seen.y_m[:n] - move.y_m[:n]).max() <= ASTRAY_M
@@ -123,10 +123,10 @@ def test_nobody_meets_who_changes_its_speed_or_stands():
     even = np.array([0.0, 4.0]), np.array([10.0, 10.0])
     brakes = np.array([0.0, 3.5, 4.0]), np.array([10.0, 10.0, 6.0])
     stands = np.array([0.0, 4.0]), np.array([10.0, 0.0])
-    assert synchrony((even, here), ("V1", even, there)).begin_s == FIRST_S
-    assert synchrony((even, here), ("V1", brakes, there)) is None
-    assert synchrony((even, here), ("V1", stands, there)) is None
-    assert synchrony((brakes, here), ("V1", even, there)) is None
+    assert meeting_of((even, here), ("V1", even, there)).begin_s == FIRST_S
+    assert meeting_of((even, here), ("V1", brakes, there)) is None
+    assert meeting_of((even, here), ("V1", stands, there)) is None
+    assert meeting_of((brakes, here), ("V1", even, there)) is None
 
 
 # ------------------------------------------------------------------ conditions
@@ -140,7 +140,7 @@ def test_who_meets_somebody_acts_by_the_distance_of_the_other():
 
 def test_a_condition_turns_true_in_the_planned_step():
     one, two = trajectory("V1", 10 * T_S, 0.0), trajectory("V2", 90 - 8 * T_S, 0.0)
-    occasions = Occasions({"V1": one, "V2": two}, {"V1": "V2", "V2": "V1"})
+    occasions = EventTriggers({"V1": one, "V2": two}, {"V1": "V2", "V2": "V1"})
     value = occasions.at("c", "V1", 2.0).entitycondition.value
     gap = two.x_m - one.x_m
     assert np.flatnonzero(gap < value)[0] == 40
@@ -148,10 +148,10 @@ def test_a_condition_turns_true_in_the_planned_step():
 
 def test_who_is_alone_acts_by_the_way_gone_and_who_stands_by_the_clock():
     goes, stands = trajectory("V1", 10 * T_S, 0.0), trajectory("V2", 0 * T_S, 9.0)
-    occasions = Occasions({"V1": goes, "V2": stands}, {})
+    occasions = EventTriggers({"V1": goes, "V2": stands}, {})
     assert 19.5 < occasions.at("c", "V1", 2.0).entitycondition.value < 20.0
     assert hasattr(occasions.at("c", "V2", 2.0), "valuecondition")
-    assert hasattr(Occasions({"V1": goes}, {}, clock=True).at("c", "V1", 2.0), "valuecondition")
+    assert hasattr(EventTriggers({"V1": goes}, {}, clock=True).at("c", "V1", 2.0), "valuecondition")
 
 
 @pytest.mark.parametrize(("low", "high", "told"), [(19.6, 20.4, 20.0), (3.2, 3.4, 3.3), (3.201, 3.203, 3.202)])
@@ -163,8 +163,8 @@ def test_thresholds_have_few_digits(low, high, told):
 def test_what_went_astray_is_told_plainly():
     moves = compile_scenario(STRAIGHT, crossroads()).planned
     actors = [actor("V1"), actor("V2")]
-    plainly = Plainly(paths=frozenset({"V1", "V2"}), alone=True, clock=True)
-    told = tags(write_xosc(actors, moves, None, handover=Handover(TOUCH, crossroads().xodr, plainly)))
+    plainly = Fallbacks(paths=frozenset({"V1", "V2"}), alone=True, clock=True)
+    told = tags(write_xosc(actors, moves, None, handover=EventOptions(TOUCH, crossroads().xodr, plainly)))
     assert told.count("FollowTrajectoryAction") == 2
     assert not {"SynchronizeAction", "RelativeDistanceCondition", "TraveledDistanceCondition"} & set(told)
 
@@ -172,6 +172,6 @@ def test_what_went_astray_is_told_plainly():
 def test_a_contact_that_no_events_give_ends_in_the_plainest_words():
     """A made-up contact of two that never touch: every word is given up, and the file is still written."""
     moves = [northbound(0 * T_S), trajectory("V2", 50 + 0 * T_S, 50.0)]
-    text = write_editable([actor("V1"), actor("V2")], moves, None, Handover(TOUCH, crossroads().xodr), "1.2")
+    text = write_editable([actor("V1"), actor("V2")], moves, None, EventOptions(TOUCH, crossroads().xodr), "1.2")
     assert "FollowTrajectoryAction" in tags(text)
     assert not {"SynchronizeAction", "AssignRouteAction", "RelativeDistanceCondition"} & set(tags(text))

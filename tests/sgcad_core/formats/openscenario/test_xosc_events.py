@@ -14,7 +14,7 @@ from sgcad_core.execution.playback import execution_of
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.openscenario.check import xosc_findings
 from sgcad_core.formats.openscenario.playing.player import play
-from sgcad_core.formats.openscenario.writing.events import Handover
+from sgcad_core.formats.openscenario.writing.events import EventOptions
 from sgcad_core.formats.openscenario.writing.pacing import NEAR_M, pieces
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.formats.xml import parse_xml
@@ -83,7 +83,7 @@ def test_events_are_few_and_start_in_lanes():
 def test_who_keeps_a_straight_lane_needs_no_path():
     s = T_S * 12
     car, move = actor("V1"), trajectory("V1", 1.8 + 0 * s, -110 + s, np.pi / 2)
-    text = write_xosc([car], [move], None, handover=Handover(None, crossroads().xodr))
+    text = write_xosc([car], [move], None, handover=EventOptions(None, crossroads().xodr))
     assert "FollowTrajectoryAction" not in text
     assert "LanePosition" in text
     assert xosc_findings(text, crossroads().xodr) == []
@@ -93,20 +93,20 @@ def test_who_keeps_a_straight_lane_needs_no_path():
 
 
 def test_without_a_road_places_are_those_of_the_world():
-    text = write_xosc([actor("V1")], [trajectory("V1", T_S * 10, 0.0)], None, handover=Handover())
+    text = write_xosc([actor("V1")], [trajectory("V1", T_S * 10, 0.0)], None, handover=EventOptions())
     assert "LanePosition" not in text
     assert play(text)[0].x_m[-1] == pytest.approx(40.0, abs=0.1)
 
 
 def test_everybody_may_stand():
-    text = write_xosc([actor("V1")], [trajectory("V1", T_S * 0 + 3, 4.0)], None, handover=Handover())
+    text = write_xosc([actor("V1")], [trajectory("V1", T_S * 0 + 3, 4.0)], None, handover=EventOptions())
     assert xosc_findings(text, None) == []
     np.testing.assert_allclose(play(text)[0].x_m, 3.0, atol=1e-5)
 
 
 def test_what_the_timed_encoding_refuses_is_refused():
     with pytest.raises(InvalidOutput, match="rising times"):
-        write_xosc([actor("V1")], [trajectory("V1", [0.0], 0.0)], None, handover=Handover())
+        write_xosc([actor("V1")], [trajectory("V1", [0.0], 0.0)], None, handover=EventOptions())
 
 
 @settings(max_examples=40, deadline=None)
@@ -132,7 +132,7 @@ def test_driven_lines_are_followed(speeds, turn, start):
     heading = start + turn * T_S
     x, y = (np.concatenate(([0.0], np.cumsum((speed * f(heading))[:-1] * 0.05))) for f in (np.cos, np.sin))
     move = trajectory("V1", x, y, heading)
-    seen = play(write_xosc([actor("V1")], [move], None, handover=Handover()))[0]
+    seen = play(write_xosc([actor("V1")], [move], None, handover=EventOptions()))[0]
     n = min(len(seen.t_s), len(x))
     assert np.hypot(seen.x_m[:n] - x[:n], seen.y_m[:n] - y[:n]).max() < 0.15
     assert arc_lengths(np.column_stack((seen.x_m, seen.y_m)))[-1] > 5

@@ -9,9 +9,9 @@ import pytest
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.opendrive.checks.road_index import lane_index
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.formats.openscenario.playing.positions import shifted
-from sgcad_core.formats.openscenario.playing.timed_motion import Pose
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.geometry.distances import distance_to

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sgcad_core.formats.openscenario.writing.vertices import APART_M, settled, vertex_rows
+from sgcad_core.formats.openscenario.writing.vertices import APART_M, held_at_standstill, vertex_rows
 from tests.sgcad_core.formats.xosc_samples import trajectory
 
 
@@ -83,7 +83,7 @@ def test_the_moment_of_a_blow_is_a_vertex():
 def test_who_is_hardly_moved_from_where_it_stands_stays_there():
     """Players would creep to the last vertex from the start on."""
     x = np.concatenate((np.zeros(60), np.linspace(0.005, 0.06, 12), np.full(30, 0.06)))
-    assert np.ptp(settled(trajectory("V1", x, 0.0)).x_m) == 0.0
+    assert np.ptp(held_at_standstill(trajectory("V1", x, 0.0)).x_m) == 0.0
 
 
 @pytest.mark.parametrize("x", [
@@ -92,4 +92,4 @@ def test_who_is_hardly_moved_from_where_it_stands_stays_there():
     np.concatenate((np.zeros(8), np.linspace(0.005, 0.06, 12), np.full(30, 0.06))),  # stood for less than a second
 ])  # fmt: skip
 def test_all_other_motion_is_as_it_was(x):
-    np.testing.assert_array_equal(settled(trajectory("V1", x, 0.0)).x_m, x)
+    np.testing.assert_array_equal(held_at_standstill(trajectory("V1", x, 0.0)).x_m, x)

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from research.benchmarks.scenes.reimport import differences
 from sgcad_core.case.records import RoadNetwork
 from sgcad_core.errors import ConfigError, InvalidOutput
-from sgcad_core.formats.round_trip import differences
 from sgcad_core.formats.sumo.existing_map import hub_legs, read_map
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import network_figures, parse_net

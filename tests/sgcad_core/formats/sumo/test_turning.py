@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from sgcad_core.case.records import PlainXml
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.turning import best_turn, prolonged, turned
+from sgcad_core.formats.sumo.turning import best_turn, turned_network, with_longer_ends
 from sgcad_core.roads.junction_words import JunctionLeg
 
 ANGLES = st.floats(-math.pi, math.pi, allow_nan=False)
@@ -67,19 +67,19 @@ def test_a_turn_keeps_every_distance(turn: float) -> None:
         named = re.findall(r'x="([^"]*)" y="([^"]*)"', plain.nodes)
         return [(float(x), float(y)) for x, y in [*named, *(p.split(",") for p in shape.split())]]
 
-    before, after = points(PLAIN), points(turned(PLAIN, turn))
+    before, after = points(PLAIN), points(turned_network(PLAIN, turn))
     for i in range(len(before)):
         for k in range(i):
             assert math.dist(after[i], after[k]) == pytest.approx(math.dist(before[i], before[k]), abs=0.01)
 
 
 def test_no_turn_changes_no_byte() -> None:
-    assert turned(PLAIN, 0.0) is PLAIN
+    assert turned_network(PLAIN, 0.0) is PLAIN
 
 
 def test_what_is_no_xml_is_invalid_output() -> None:
     with pytest.raises(InvalidOutput, match="plain_xml nodes"):
-        turned(PlainXml(nodes="<nodes>", edges="<edges/>"), 1.0)
+        turned_network(PlainXml(nodes="<nodes>", edges="<edges/>"), 1.0)
 
 
 def test_a_road_that_ends_too_soon_runs_straight_on_and_others_stay() -> None:
@@ -90,7 +90,7 @@ def test_a_road_that_ends_too_soon_runs_straight_on_and_others_stay() -> None:
         '<edge id="-A" from="hub" to="a" shape="2,0 2,30"/>',
     )
     edges = f'<edges>{there}{back}<edge id="B" from="b" to="hub" shape="90,0 0,0"/></edges>'
-    longer = prolonged(PlainXml(nodes=nodes, edges=edges), 80)
+    longer = with_longer_ends(PlainXml(nodes=nodes, edges=edges), 80)
     assert 'id="a" x="0.000" y="80.000"' in longer.nodes
     assert 'id="b" x="90" y="0"' in longer.nodes
     assert 'shape="0.000,80.000 0.000,30.000 0.000,0.000"' in longer.edges

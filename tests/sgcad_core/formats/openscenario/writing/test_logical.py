@@ -12,7 +12,13 @@ from sgcad_core.execution.contact import first_contact
 from sgcad_core.formats.openscenario.reading.expressions import evaluated
 from sgcad_core.formats.openscenario.reading.files import play_file, variations
 from sgcad_core.formats.openscenario.writing.entities import SUNS
-from sgcad_core.formats.openscenario.writing.logical import Meets, Range, deterministic, logical_xosc, stochastic
+from sgcad_core.formats.openscenario.writing.logical import (
+    ParameterizedActor,
+    ParameterRange,
+    deterministic_distribution,
+    logical_xosc,
+    stochastic_distribution,
+)
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.handover.family.discrete_parameters import LIGHTS
 from sgcad_core.handover.family.parameter_priors import open_parameters
@@ -21,10 +27,10 @@ from tests.sgcad_core.handover.scenes import crossing
 from tests.sgcad_core.handover.test_open_choices import braking, on_road
 
 RANGES = [
-    Range("V1_pace", 1.0, 0.6, 1.4, 1.0, 0.2),
-    Range("V1_aside_m", 0.0, -0.6, 0.6, 0.0, 0.2),
-    Range("V1_length", 1.0, 0.8, 1.2, 1.0, 0.1),
-    Range("V2_late_s", 0.0, -0.4, 0.4, 0.0, 0.0),
+    ParameterRange("V1_pace", 1.0, 0.6, 1.4, 1.0, 0.2),
+    ParameterRange("V1_aside_m", 0.0, -0.6, 0.6, 0.0, 0.2),
+    ParameterRange("V1_length", 1.0, 0.8, 1.2, 1.0, 0.1),
+    ParameterRange("V2_late_s", 0.0, -0.4, 0.4, 0.0, 0.0),
 ]
 SETS = [
     {"V1_pace": 1.25, "V1_aside_m": 0.3, "V1_length": 1.1, "V2_late_s": 0.1},
@@ -39,10 +45,10 @@ def files(tmp_path_factory):
     nominal = undisturbed(basis, {})
     back = 2.7
     text = write_xosc(nominal.actors, with_earlier_start(nominal, back), None)
-    meets = [Meets(a.id, basis.contact_s + back) for a in nominal.actors]
+    meets = [ParameterizedActor(a.id, basis.contact_s + back) for a in nominal.actors]
     (folder / "logical.xosc").write_text(logical_xosc(text, RANGES, meets, basis.contact_s))
-    (folder / "deterministic.xosc").write_text(deterministic("logical.xosc", SETS))
-    (folder / "stochastic.xosc").write_text(stochastic("logical.xosc", RANGES, 3, 11))
+    (folder / "deterministic.xosc").write_text(deterministic_distribution("logical.xosc", SETS))
+    (folder / "stochastic.xosc").write_text(stochastic_distribution("logical.xosc", RANGES, 3, 11))
     return folder, basis
 
 
@@ -85,7 +91,9 @@ def test_parameters_are_constrained_to_their_ranges(files):
 
 def test_a_file_without_timed_trajectories_is_refused():
     with pytest.raises(InvalidOutput, match="has no timed trajectory"):
-        logical_xosc("<OpenSCENARIO><ParameterDeclarations/></OpenSCENARIO>", RANGES, [Meets("V1", 6.0)], 6.0)
+        logical_xosc(
+            "<OpenSCENARIO><ParameterDeclarations/></OpenSCENARIO>", RANGES, [ParameterizedActor("V1", 6.0)], 6.0
+        )
     with pytest.raises(InvalidOutput, match="no ParameterDeclarations"):
         logical_xosc("<OpenSCENARIO/>", RANGES, [], 6.0)
 

@@ -23,7 +23,7 @@ from sgcad_core.formats.openscenario.playing.families import Family
 from sgcad_core.formats.openscenario.playing.positions import POSITIONS
 from sgcad_core.formats.openscenario.reading.variation import STOCHASTIC
 from sgcad_core.formats.openscenario.roads.shapes import SHAPES
-from sgcad_core.formats.openscenario.writing.events import Handover
+from sgcad_core.formats.openscenario.writing.events import EventOptions
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.kinds import ACTORS
 from sgcad_core.records.specs import BehaviorSpec
@@ -60,9 +60,9 @@ deterministic and stochastic parameter distributions (each set is played); maps 
 arcs, spirals, poly3, paramPoly3, several lane sections, lane offsets, borders, junctions, left- and right-hand traffic.
 Motion is plane: elevation, pitch and roll are left out.
 
-A stranger's file gets what other players let pass as a note: a place beyond a road's end (the end is taken), a signed
-rate, a box without size, an entity without a place, an undeclared parameter in a condition, an empty action. In files
-of our own the same are faults.
+In third-party files, what other players accept gives a note: a place beyond a road's end (the end is taken), a signed
+rate, a box without size, an entity without a place, an undeclared parameter in a condition, an empty action. In own
+files the same are faults.
 """
 
 
@@ -118,7 +118,7 @@ DIFFERENCES: dict[str, str] = {
     "`TeleportAction` in the story": "esmini holds an entity still in the step of its teleport; ours goes on at once: "
     "one step of motion, 0.6 m at 56 m/s and steps of 0.01 s",
     "`SynchronizeAction`": "esmini takes its own and the master's speed along the road's reference line, also where "
-    "somebody crosses the road; ours along the way that is gone. Where the speed of the moment leads there by no even "
+    "an entity crosses the road; ours along the way that is gone. Where the speed of the moment leads there by no even "
     "change, esmini begins at another speed at once; ours changes it evenly in two phases",
     "`TimeHeadwayCondition`, alongRoute": "esmini measures as the crow flies, between boxes or origins; ours along the "
     "road, as version 1.0 says: what follows begins some steps earlier or later in a bend or beside another lane",
@@ -179,7 +179,7 @@ def written_elements() -> set[str]:
     spoken = {"id": "V1", "kind": "car", "road": "S", "direction": "forward", "maneuver": "straight"}
     behavior = BehaviorSpec.model_validate({"actors": [spoken], "light": "dark", "weather": "rain", "surface": "wet"})
     touch = ObservedContact(actor="V1", other="V2", actor_area="front", other_area="back", t_s=5.0)
-    texts = [write_xosc(actors, motions, behavior, handover=way) for way in (None, Handover(touch, _MAP))]
+    texts = [write_xosc(actors, motions, behavior, handover=way) for way in (None, EventOptions(touch, _MAP))]
     return {str(e.tag) for text in texts for e in etree.fromstring(text.encode()).iter() if isinstance(e.tag, str)}
 
 

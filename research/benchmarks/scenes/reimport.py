@@ -12,17 +12,20 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Literal, NamedTuple
 
+from sgcad_core import settings
+from sgcad_core.case.records import PlainXml
 from sgcad_core.errors import ConfigError
 from sgcad_core.formats.opendrive.checks.road_index import RoadIndex, lane_index
-from sgcad_core.formats.opendrive.controls import center_lanes, parking_lanes
+from sgcad_core.formats.opendrive.controls import imported_lanes
 from sgcad_core.formats.opendrive.signals import posted_mph
-from sgcad_core.formats.sumo.existing_map import plain_of_map
+from sgcad_core.formats.sumo.existing_map import map_parts
 from sgcad_core.formats.sumo.net_xml import parse_net
-from sgcad_core.formats.sumo.netconvert import compile_network, net_of_xodr
+from sgcad_core.formats.sumo.netconvert import FLAGS, TIMEOUT_S, compile_network
 from sgcad_core.formats.sumo.parameters import CONTROL
-from sgcad_core.formats.xml import parse_xml
+from sgcad_core.formats.xml import Element, parse_xml, to_text
 from sgcad_core.roads.lane_graph import Connection, Edge, LaneGraph
-from sgcad_core.system.temp_folders import scratch
+from sgcad_core.system.subprocess_limits import run_limited
+from sgcad_core.system.temp_folders import temp_folder
 
 ASPECTS = ("edges", "lanes", "widths", "limits", "connections", "signals", "signs")
 Reader = Literal["netconvert", "sgcad"]
@@ -79,26 +82,44 @@ def _outside(edge: Edge, index: int) -> int:
 def differences(net_xml: str, xodr: str, reader: Reader = "netconvert") -> list[Difference]:
     """All that is not as before, aspect by aspect. Raises InvalidOutput where a file is none."""
     graph, index = parse_net(net_xml), lane_index(xodr)
-    net, log = net_of_xodr(xodr) if reader == "netconvert" else _read_as_map(xodr)
+    net, log = _read_alone(xodr) if reader == "netconvert" else _read_as_map(xodr)
     if not net:
         return [Difference("edges", "file", "read", f"netconvert cannot: {log[:200]}")]
     root = parse_xml(xodr, "xodr")
     alone = reader == "netconvert"
-    center, parking = (center_lanes(root), parking_lanes(root)) if alone else ({}, {})
+    center, parking = (_lane_counts(root, "bidirectional"), _lane_counts(root, "parking")) if alone else ({}, {})
     both = _Back(graph, parse_net(net), edge_names(graph, index), center, parking)
     signs = () if reader == "netconvert" else _signs(both)
     return [*_edges(both), *_lanes(both), *_connections(both), *_signals(both), *signs]
 
 
 def _read_as_map(xodr: str) -> tuple[str, str]:
-    with scratch("back") as folder:
+    with temp_folder("back") as folder:
         file = folder / "road.xodr"
         file.write_text(xodr, encoding="utf-8")
         try:
-            network = compile_network(plain_of_map(file))
+            nodes, edges, links = map(to_text, map_parts(file, ("--no-turnarounds",)))
+            network = compile_network(PlainXml(nodes=nodes, edges=edges, connections=links))
         except ConfigError as fault:
             return "", str(fault)
     return network.net_xml or "", network.log
+
+
+def _read_alone(xodr: str) -> tuple[str, str]:
+    """(.net.xml, netconvert's messages) as netconvert itself reads an OpenDRIVE file; "" where it cannot."""
+    with temp_folder("back") as folder:
+        source, net = folder / "road.xodr", folder / "road.net.xml"
+        source.write_text(xodr, encoding="utf-8")
+        command = [str(settings.netconvert()), "--opendrive-files", source.name, *FLAGS, "-o", net.name]
+        done = run_limited(command, folder, settings.subprocess_environment(), TIMEOUT_S)
+        text = net.read_text(encoding="utf-8") if done.returncode == 0 and net.exists() else ""
+    return text, (done.stderr + done.stdout).decode("utf-8", "replace").strip()
+
+
+def _lane_counts(root: Element, kind: str) -> dict[str, int]:
+    """Edge -> the number of its lanes of a type that netconvert opens to through cars."""
+    counts = {edge: sum(lane.get("type") == kind for lane in lanes) for edge, lanes in imported_lanes(root).items()}
+    return {edge: count for edge, count in counts.items() if count}
 
 
 def edge_names(graph: LaneGraph, index: RoadIndex) -> dict[str, str]:

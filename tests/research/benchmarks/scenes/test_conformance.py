@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from research.benchmarks.scenes.conformance import FAMILIES, page, written_elements
 from sgcad_core.errors import Unsupported
-from sgcad_core.formats.openscenario.conformance import FAMILIES, page, written_elements
-from sgcad_core.formats.openscenario.reading.elements import Node
+from sgcad_core.formats.openscenario.reading.elements import XmlNode
 from sgcad_core.formats.xml import parse_xml
 
 DOCS = Path(__file__).resolve().parents[4] / "docs" / "conformance.md"
@@ -31,6 +31,6 @@ def test_what_the_table_refuses_the_player_refuses_by_name(heading):
     refused = [tag for tag, entry in family.entries.items() if entry.status == "refused"]
     for tag in (*refused, "Unheard"):
         with pytest.raises(Unsupported, match=f"<{tag}>") as caught:
-            family.compile(Node(parse_xml(f"<{tag}/>", "x"), {}))
+            family.compile(XmlNode(parse_xml(f"<{tag}/>", "x"), {}))
         assert caught.value.element == tag
         assert caught.value.findings[0].remedy
