@@ -10,7 +10,7 @@ from typing import Any
 
 import httpx
 
-from flows.deploy import health
+from flows import health
 from flows.deploy.defaults import inbox_address
 from flows.deploy.storage import Place
 from sgcad_core import settings

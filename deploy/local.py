@@ -24,8 +24,8 @@ import psutil
 from deploy import inbox, services
 from deploy.serve import serve
 from deploy.services import Ports, Service
-from flows.deploy import health
-from flows.deploy.health import Running
+from flows import health
+from flows.health import Running
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool, SgcadError
 

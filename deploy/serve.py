@@ -12,7 +12,7 @@ from pathlib import Path
 import httpx
 
 from deploy import services
-from flows.deploy import health
+from flows import health
 from sgcad_core import settings
 from sgcad_core.errors import MissingTool
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from flows.deploy.health import POOL
+from flows.health import POOL
 from flows.server import BULK
 from sgcad_core import settings
 

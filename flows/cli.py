@@ -19,11 +19,11 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 import typer
 
 from flows.case.revise_command import revise
-from flows.desk_commands import desk_app
+from flows.desk.command import desk_app
 from flows.drive.commands import drive, vary
 from flows.index_commands import index_app
 from flows.plugin_commands import plugins_app
-from flows.results.commands import report, score, table
+from flows.results.report.commands import report, score, table
 from flows.terminal import escape_plain
 from sgcad_core import settings
 from sgcad_core.errors import SgcadError
@@ -81,7 +81,7 @@ def run(
     encoding: Encoding = "",
 ) -> None:
     """Turn reports into scenarios."""
-    from flows.batch.find_cases import cases_of
+    from flows.case_files.find_cases import cases_of
 
     _batch(cases_of(reports), config, [*(overrides or ()), *_encoded(encoding)], out, jobs, fresh)
 
@@ -98,7 +98,7 @@ def evaluate(
     encoding: Encoding = "",
 ) -> None:
     """Run every case of a folder under one or several configs; run again to go on where it stopped."""
-    from flows.batch.find_cases import cases_in
+    from flows.case_files.find_cases import cases_in
 
     judged = [f"judge.name={judge}"] if judge else []
     _batch(cases_in(cases), config, [*(overrides or ()), *judged, *_encoded(encoding)], out, jobs, fresh)
@@ -163,7 +163,8 @@ def study(
 
     A study begun before goes on by its name alone, with the cases and overrides it was begun with.
     """
-    from flows.study import hosts_preflight, plan, resume, run_study, spec
+    from flows.deploy import hosts_preflight
+    from flows.study import plan, resume, run_study, spec
 
     known = resume.before(file, out)
     given = resume.cases_of(known, tuple(cases or ())), truth or known.truth, overrides or known.overrides
@@ -298,3 +299,7 @@ def _leave(code: int) -> None:
         except psutil.NoSuchProcess:
             continue
     os._exit(code)
+
+
+if __name__ == "__main__":
+    main()

@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from flows.batch import progress_bar, run_batch, summary
-from flows.batch.find_cases import cases_in
 from flows.batch.plan_batch import Batch, batch_of
 from flows.case import case_in_words
-from flows.case.case_folder import CaseFolder
+from flows.case_files.case_folder import CaseFolder
+from flows.case_files.find_cases import cases_in
 from flows.cli import DEFAULT_OUT, guarded
 from flows.terminal import escape_plain
 from sgcad_core import settings

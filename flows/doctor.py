@@ -16,8 +16,8 @@ import httpx
 import psutil
 from rich.console import Console
 
-from flows.case import case_folder
-from flows.deploy import health
+from flows import health
+from flows.case_files import case_folder
 from flows.server import prefect_server
 from flows.terminal import escape
 from sgcad_core import settings

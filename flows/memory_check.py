@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from flows.study import machine
+from flows.batch import machine
 from sgcad_core.config import Config
 
 MARGIN = 1.1

@@ -16,11 +16,11 @@ from typing import Any
 
 import yaml
 
-from flows.batch.find_cases import safe_id
+from flows.case_files.case_folder import CONFIG
+from flows.case_files.find_cases import safe_id
 from flows.study.cross_product import name_of
 from sgcad_core.config import Config
 
-FILE = "config.yaml"
 NO_ARTIFACT = ("judge", "tracker")
 _LOGIN = re.compile(r"//[^/@\s]+@")
 
@@ -38,13 +38,13 @@ def write(folder: Path, config: Config) -> None:
     """Write the effective config into the folder of its results, without logins of addresses."""
     folder.mkdir(parents=True, exist_ok=True)
     text = yaml.safe_dump(dict(config.raw), sort_keys=False, allow_unicode=True)
-    (folder / FILE).write_text(_LOGIN.sub("//", text), encoding="utf-8")
+    (folder / CONFIG).write_text(_LOGIN.sub("//", text), encoding="utf-8")
 
 
 def replaced(folder: Path, config: Config) -> str:
     """One line if the folder holds results of another config of that name, else an empty text."""
     try:
-        before = yaml.safe_load((folder / FILE).read_text(encoding="utf-8"))
+        before = yaml.safe_load((folder / CONFIG).read_text(encoding="utf-8"))
     except (OSError, ValueError, yaml.YAMLError):
         return ""
     held = sum(1 for _ in folder.glob("*/result.json"))

@@ -17,14 +17,15 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from flows.batch import config_folder, find_cases, stage_cache
-from flows.batch.find_cases import Case
-from flows.batch.stage_cache import Sharing
+from flows.batch import config_folder
 from flows.batch.worker import Order
-from flows.case import case_folder, chain
-from flows.case.case_folder import CaseFolder
-from flows.case.chain import Ending
+from flows.case import run_case
+from flows.case.run_case import Ending
 from flows.case.step_log import OnStep, unheard
+from flows.case_files import case_folder, find_cases, stage_cache
+from flows.case_files.case_folder import CaseFolder
+from flows.case_files.find_cases import Case
+from flows.case_files.stage_cache import Sharing
 from sgcad_core.asking.refine import OnAttempt
 from sgcad_core.config import Config, load
 from sgcad_core.errors import ConfigError, ProcessDied, SimulationFailed
@@ -200,7 +201,7 @@ class Crew:
         with self._places:
             self._check()
             about = job.config, job.case, self.batch.out, job.digest, watched
-            return chain.run_case(*about, sharing=job.sharing, tell=tell)
+            return run_case.run_case(*about, sharing=job.sharing, tell=tell)
 
     def began(self, job: Job) -> bool:
         """Whether the job runs in a worker process and its ending waits (its steps are then told with that)."""
@@ -214,7 +215,7 @@ class Crew:
             ending = self._answered(worker, order)
         except SimulationFailed as death:
             self._check()
-            ending = chain.leave_failed(job.config, job.case, self.batch.out, job.digest, str(death))
+            ending = run_case.leave_failed(job.config, job.case, self.batch.out, job.digest, str(death))
         finally:
             self._idle.put(worker)
         return ending

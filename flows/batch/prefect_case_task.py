@@ -20,7 +20,7 @@ from prefect.task_runners import TaskRunner, ThreadPoolTaskRunner
 
 from flows.batch.plan_batch import Crew, Job
 from flows.batch.prefect_tasks import Graph
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
 from sgcad_core.asking.refine import run_at_once
 from sgcad_core.errors import SgcadError
 from sgcad_core.result import counts_of

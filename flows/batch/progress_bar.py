@@ -16,7 +16,7 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn
 
 from flows.batch.plan_batch import Job
 from flows.batch.summary import Tally
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
 from flows.terminal import escape
 from sgcad_core.result import counts_of
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from flows.batch import track_cases
 from flows.batch.plan_batch import Batch, Crew, Job, OnTurn
 from flows.batch.track_cases import OnEnding
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
 from flows.server import Server, ServerLost, prefect_server
 from sgcad_core import settings
 
@@ -74,7 +74,7 @@ def _under_a_server(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: On
         with prefect_server() as server:
             if server:  # it takes seconds to start
                 crew.begin(plan)
-            from flows.batch.evaluate_flow import run_flow
+            from flows.batch.batch_flow import run_flow
 
             if server:
                 server.wait()

@@ -17,8 +17,8 @@ from rich.text import Text
 from flows.batch import second_simulator
 from flows.batch.plan_batch import Batch, Job
 from flows.case import case_in_words
-from flows.case.case_folder import CaseFolder
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
+from flows.case_files.case_folder import CaseFolder
 from flows.terminal import escape
 from sgcad_core.result import STATUSES, as_declared, counts_of
 

@@ -16,12 +16,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from flows.batch import find_cases
-from flows.batch.find_cases import Case
+from flows.batch import machine
 from flows.batch.plan_batch import Job
-from flows.case.chain import Ending
-from flows.study import machine
-from flows.study.plan import dataset_digest
+from flows.case.run_case import Ending
+from flows.case_files import find_cases
+from flows.case_files.find_cases import Case
 from sgcad_core.case.tracker_arm import Arm, Dataset
 from sgcad_core.config import SCALARS, SINGLE, Config
 from sgcad_core.errors import SgcadError
@@ -169,7 +168,9 @@ def _arm(jobs: Sequence[Job]) -> Arm:
 def dataset_of(found: tuple[Case, ...]) -> Dataset:
     """The reports as one data set, whatever their order."""
     place = Path(os.path.commonpath([case.source.resolve().parent for case in found]))
-    return Dataset(name=place.name or "cases", digest=dataset_digest(found), source=str(place), cases=len(found))
+    return Dataset(
+        name=place.name or "cases", digest=find_cases.dataset_digest(found), source=str(place), cases=len(found)
+    )
 
 
 _hardware = cache(machine.hardware)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from flows.batch.find_cases import Case
-from flows.batch.stage_cache import Sharing
-from flows.case.chain import Ending, run_case
+from flows.case.run_case import Ending, run_case
+from flows.case_files.find_cases import Case
+from flows.case_files.stage_cache import Sharing
 from sgcad_core.config import Config, build
 
 _configs: dict[str, Config] = {}
@@ -27,7 +27,7 @@ class Order:
 
 
 def run_in_worker(order: Order) -> Ending:
-    """`flows.case.chain.run_case` over there."""
+    """`flows.case.run_case.run_case` over there."""
     name = order.name
     if name not in _configs:
         _configs[name] = build(order.raw, name, name)

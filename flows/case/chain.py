@@ -1,7 +1,7 @@
-"""One case from report to folder: read, retrieve, road, scenario, simulate, measure, draw, write.
+"""One case from report to simulation: read, retrieve, road, scenario, simulate, measure.
 
-Knows the interfaces, not the plugins, and no Prefect: it runs in a thread, a worker process or a test
-alike. Here is the boundary that keeps a batch alive: whatever one case dies of is that case's result.
+Knows the interfaces, not the plugins, and no Prefect: it runs in a thread, a worker process or a test alike. Here is
+the boundary that keeps a batch alive: every fault of one case becomes that case's result.
 """
 
 from __future__ import annotations
@@ -11,16 +11,13 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, TypeVar
 
-from flows.batch import stage_cache
-from flows.batch.find_cases import Case
-from flows.batch.stage_cache import Sharing
-from flows.case import case_folder, person_facts
-from flows.case.model_calls import ask_of
-from flows.case.step_log import OnStep, Step, Steps, unheard
-from flows.case.write_case import leave
+from flows.case import person_facts
+from flows.case.step_log import Steps
+from flows.case_files import stage_cache
+from flows.case_files.find_cases import Case
+from flows.case_files.stage_cache import Sharing
 from sgcad_core.asking.refine import Call, OnAttempt, Refinement, Write, outcome_of, run_at_once
 from sgcad_core.asking.second_opinion import corrected, seconded, whole
 from sgcad_core.case.records import (
@@ -29,7 +26,9 @@ from sgcad_core.case.records import (
     CrashReport,
     Evidence,
     Execution,
+    Generation,
     Passage,
+    Query,
     RoadNetwork,
     Scenario,
     Stage,
@@ -38,7 +37,7 @@ from sgcad_core.case.records import (
 from sgcad_core.config import Config
 from sgcad_core.errors import ConfigError, MissingTool, SgcadError
 from sgcad_core.execution.compare_executions import Judgement, judge
-from sgcad_core.interfaces import RoadWriter, ScenarioWriter
+from sgcad_core.interfaces import Ask, RoadWriter, ScenarioWriter
 from sgcad_core.metrics import measure
 from sgcad_core.records.edits import Edit
 from sgcad_core.records.second_reader import LEARNED, WHOLE
@@ -48,18 +47,17 @@ from sgcad_core.revision import heeding
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
-class Ending:
-    """What a caller learns of a finished case; the rest is on disk. `reused`: nothing had to be done.
+def ask_of(config: Config) -> Ask:
+    """How writers of this config speak to its model; a later attempt draws with another seed."""
+    backbone, decoder = config.backbone, config.decoder
+    if backbone is None or decoder is None:  # config.build refuses this pairing
+        lack = "backbone" if backbone is None else "decoder"
+        raise ConfigError(f"{config.name}: a model is asked, but there is no {lack}: name one, as mini.yaml does")
 
-    Attempts and calls are those made here and now, without the ones taken from a shelf; steps are all.
-    """
+    def ask(context: Context, query: Query) -> Generation:
+        return backbone.generate(context, query, decoder.at(query.attempt), seed=config.seed + query.attempt - 1)
 
-    result: dict[str, Any]
-    attempts: tuple[Attempt, ...] = ()
-    calls: tuple[Call, ...] = ()
-    reused: bool = False
-    steps: tuple[Step, ...] = ()
+    return ask
 
 
 @dataclass
@@ -251,53 +249,3 @@ class CaseRun:
         """Make this a failed case whose reason is a fault that nobody foresaw."""
         self.failure = f"unexpected {type(fault).__name__}: {fault} (see error.txt)"
         self.trace = "".join(traceback.format_exception(fault))
-
-
-def run_case(
-    config: Config,
-    case: Case,
-    out: Path,
-    digest: str,
-    on_attempt: OnAttempt = run_at_once,
-    *,
-    sharing: Sharing | None = None,
-    tell: OnStep = unheard,
-) -> Ending:
-    """Run one case and leave its folder. Raises MissingTool, ConfigError (a folder that cannot be written)."""
-    run = CaseRun(config, case, on_attempt, sharing, steps=Steps(tell))
-    run.go()
-    result = leave_run(run, case_folder.CaseFolder(out, config.name, case.id), digest)
-    return Ending(result, tuple(run.fresh), tuple(run.calls), steps=tuple(run.steps.done))
-
-
-def leave_failed(config: Config, case: Case, out: Path, digest: str, reason: str) -> Ending:
-    """The folder of a case whose process died, with the reason. The report is not read again: it may be the cause."""
-    run = CaseRun(config, case, run_at_once, failure=reason)
-    return Ending(leave_run(run, case_folder.CaseFolder(out, config.name, case.id), digest))
-
-
-def leave_run(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict[str, Any]:
-    """Write the folder of a case that has gone; its result. Raises ConfigError: it cannot be written."""
-    try:
-        return _write(run, folder, digest)
-    except OSError as fault:
-        raise ConfigError(
-            f"{folder.path}: cannot be written ({fault.strerror}); make room or choose another --out; "
-            "run again to go on where it stopped"
-        ) from fault
-    except Exception as fault:  # noqa: BLE001 - what cannot be drawn or written down costs one case, not the batch
-        bare = CaseRun(run.config, run.case, run_at_once, report=run.report, seconds=run.seconds)
-        bare.fail(fault)
-        return _write(bare, folder, digest)
-
-
-def _write(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict[str, Any]:
-    """Write the folder. A failed case gets no digest that matches: running again tries it again."""
-    with folder.writing() as partial:
-        result = leave(run, partial)
-        mark = digest if result["status"] != "failed" else ""
-        (partial / case_folder.DIGEST).write_text(mark, encoding="utf-8")
-        (partial / person_facts.SOURCE).write_text(
-            str(run.case.source.resolve()), encoding="utf-8", errors="surrogateescape"
-        )
-    return result

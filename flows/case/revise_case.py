@@ -23,11 +23,12 @@ from typing import Any
 
 import yaml
 
-from flows.batch import config_folder, find_cases
-from flows.batch.find_cases import Case
 from flows.case import person_facts
-from flows.case.case_folder import CaseFolder
-from flows.case.chain import CaseRun, leave_run
+from flows.case.chain import CaseRun
+from flows.case.run_case import leave_run
+from flows.case_files import find_cases
+from flows.case_files.case_folder import CONFIG, CaseFolder
+from flows.case_files.find_cases import Case
 from sgcad_core.asking.refine import run_at_once
 from sgcad_core.case.records import Finding
 from sgcad_core.config import Config, build
@@ -98,7 +99,7 @@ def opened(folder: Path, report: Path | None = None) -> Opened:
     source = report or _source(folder)
     if not source.exists():
         raise BadInput(f"{source}: the report of {folder.name} is gone: put it back, or name it with --report")
-    return Opened(folder, source, _config(folder.parent / config_folder.FILE), former, person_facts.read_specs(folder))
+    return Opened(folder, source, _config(folder.parent / CONFIG), former, person_facts.read_specs(folder))
 
 
 def _source(folder: Path) -> Path:

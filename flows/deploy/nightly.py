@@ -23,17 +23,15 @@ from prefect import flow
 from prefect.client.schemas.objects import State
 from prefect.states import Completed, Failed
 
-from flows.batch import find_cases as case_sets
-from flows.batch.evaluate_flow import drive
-from flows.batch.plan_batch import MAX_JOBS, Batch, Crew, Job, batch_of
+from flows.batch.batch_flow import run_inside_flow
+from flows.batch.machine import git_commit
+from flows.batch.plan_batch import MAX_JOBS, Batch, batch_of
 from flows.batch.prefect_case_task import threads
-from flows.case import case_folder
-from flows.case.chain import Ending
+from flows.case_files import case_folder
+from flows.case_files import find_cases as case_sets
 from flows.deploy.defaults import cases_folder, overrides_of
 from flows.results.measures import GENERATION, NETWORK_MEAN, NETWORK_WRONG, TRUTH, Measure, values_of
 from flows.results.reading import Study, load_study
-from flows.study.machine import git_commit
-from flows.study.plan import dataset_digest
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 
@@ -76,23 +74,12 @@ def nightly_flow(
     batch = batch_of(case_sets.cases_in([cases_folder(cases)]), paths, Path(out), overrides_of(overrides), jobs, fresh)
     if truth and not Path(truth).is_dir():
         raise ConfigError(f"truth {truth}: no such folder; give the one that holds <case>.json, or none")
-    _work(batch)
+    run_inside_flow(batch, lambda _job, _ending, _untracked: None)  # endings are read from disk afterwards
     latest = _about(batch, figures_of(batch, Path(truth) if truth else None))
     case_folder.write_json(batch.out / LATEST, latest)
     if accept:
         accept_latest(batch.out)
     return _judged(batch.out, latest, Tolerance(tolerance, seconds_factor=seconds_factor))
-
-
-def _work(batch: Batch) -> None:
-    plan, crew = batch.plan(), Crew(batch)
-    crew.begin(plan)
-    drive(plan, crew, _nothing)
-    crew.close()
-
-
-def _nothing(job: Job, ending: Ending, untracked: str) -> None:
-    """Endings are read from disk afterwards."""
 
 
 def _judged(out: Path, latest: dict[str, Any], tolerance: Tolerance) -> State[Any]:
@@ -175,7 +162,7 @@ def _about(batch: Batch, figures: Figures) -> dict[str, Any]:
         "measured": datetime.now(UTC).isoformat(timespec="seconds"),
         "package": version("sg-cadvlm"),
         "git_commit": git_commit(),
-        "dataset_digest": dataset_digest(batch.cases),
+        "dataset_digest": case_sets.dataset_digest(batch.cases),
         "cases": len(batch.cases),
         "figures": figures,
     }

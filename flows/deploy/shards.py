@@ -27,11 +27,11 @@ from prefect.runtime import flow_run
 from prefect.states import Completed, Crashed
 
 from flows.batch import track_cases
-from flows.batch.evaluate_flow import drive
+from flows.batch.batch_flow import submit_and_follow
 from flows.batch.plan_batch import Job
 from flows.batch.prefect_case_task import threads
 from flows.batch.track_cases import OnEnding
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
 from flows.study.plan import Plan
 from flows.study.shard_lease import BEAT_S
 from flows.study.shards import Shard, lay_out, work_of, work_on
@@ -73,7 +73,7 @@ def shard_flow(
     """
     place = Path(scratch or tempfile.gettempdir()) / "sgcad-shards" / hashlib.sha256(address.encode()).hexdigest()[:12]
     place.mkdir(parents=True, exist_ok=True)
-    tally = work_on(Shard(Share(address), shard, str(flow_run.id), place, laying), drive, jobs, beat_s)
+    tally = work_on(Shard(Share(address), shard, str(flow_run.id), place, laying), submit_and_follow, jobs, beat_s)
     return Completed(message=", ".join(f"{count} {name}" for name, count in vars(tally).items()))
 
 

@@ -1,4 +1,7 @@
-"""`sgcad desk open`: starts the desk's server over a results folder and says where it is."""
+"""`sgcad desk`: `open` serves finished cases to a browser, `export` writes the facts that people changed as data.
+
+`sgcad desk RUNS` means `sgcad desk open RUNS`. Everything heavy is imported inside, so that --help is quick.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,10 @@ import threading
 import webbrowser
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from sgcad_core.errors import ConfigError
 
@@ -25,6 +29,24 @@ DEFAULT_PORT = 8321
 EVERYWHERE = ("0.0.0.0", "::", "")  # noqa: S104 - what is guarded against
 
 
+class OpensFolders(TyperGroup):
+    """A group of commands that takes a folder where a command is expected: then it is `open`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """`desk RUNS --open` is `desk open RUNS --open`; `desk` alone opens the usual folder."""
+        first = args[0] if args else ""
+        opens = first not in self.commands and first not in ctx.help_option_names
+        return super().parse_args(ctx, ["open", *args] if opens else args)
+
+
+desk_app = typer.Typer(
+    cls=OpensFolders,
+    help="Finished cases in people's hands. `sgcad desk RUNS` opens a results folder in a browser: it is short for "
+    "`sgcad desk open RUNS` and takes the same options.",
+)
+
+
+@desk_app.command("open")
 def open_desk(
     runs: Annotated[
         Path, typer.Argument(help="A results folder: what --out was of `sgcad run` or `evaluate`.")
@@ -48,6 +70,18 @@ def open_desk(
     serve(Asked(runs, host, port, tuple(names or ()), token, open_browser, mlflow, prefect))
 
 
+@desk_app.command()
+def export(
+    runs: Annotated[Path, typer.Argument(help="The folder of one config's cases, such as runs/template.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the pairs, the truth and the training rows.")],
+) -> None:
+    """What people mended, as data: pairs (read, mended), truth files for `sgcad score`, training rows."""
+    from flows.desk.export_edits import export as write
+
+    for line in write(runs, out):
+        typer.echo(line)
+
+
 @dataclass(frozen=True)
 class Asked:
     """The command line."""
@@ -65,7 +99,7 @@ class Asked:
 def serve(asked: Asked) -> None:
     """Serve until Ctrl-C. Raises ConfigError: no such folder, a port in use, a wrong address."""
     root, pages = _folder(asked.runs), (_page(asked.mlflow, "--mlflow"), _page(asked.prefect, "--prefect"))
-    from flows.case.case_links import noted_desk
+    from flows.case_files.case_links import noted_desk
     from flows.desk.app import application  # a second or two, which a wrong folder need not wait for
 
     gate = gate_of(asked)
@@ -126,7 +160,7 @@ def _folder(runs: Path) -> Path:
 
 
 def _page(given: str, option: str) -> str:
-    from flows.case.case_links import address
+    from flows.case_files.case_links import address
 
     if given and not address(given):
         raise ConfigError(f"{option} {given}: no web address; give one such as http://127.0.0.1:5000")

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from flows.case import case_folder, person_facts
+from flows.case import person_facts
+from flows.case_files import case_folder
 from sgcad_core.errors import BadInput, ConfigError, SgcadError
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.records.edits import Edit, effective

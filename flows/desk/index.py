@@ -1,12 +1,13 @@
 """All cases below a results folder, kept in memory and read again where a result.json changed.
 
-A thread of its own reads, so that a page never waits for 10,000 files: it gets what is known by then, and how much is
-still to come. Cases are written whole or not at all (flows/case/case_folder.py); what cannot be read all the same is a
-row that says so. Reads only.
+A thread of its own reads, so that a page never waits for 10,000 files: a page gets the rows known by then and the
+number still to come. Cases are written whole or not at all (flows/case_files/case_folder.py); a result that cannot be
+read becomes a row that says so. Reads only.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import threading
@@ -160,3 +161,20 @@ def _may_hold(entry: os.DirEntry[str]) -> bool:
         return not entry.name.startswith(".") and entry.is_dir(follow_symlinks=False)
     except (OSError, UnicodeEncodeError):
         return False
+
+
+# ------------------------------------------------------------------ the version of a case
+STATES = (RESULT, "facts.yaml", "player.html")
+"""Files that change when a case is run again or mended."""
+
+
+def version_of(folder: Path) -> str:
+    """A fingerprint of the case as it stands on disk."""
+    found = hashlib.sha256()
+    for name in STATES:
+        try:
+            about = (folder / name).stat()
+            found.update(f"{name} {about.st_mtime_ns} {about.st_size} {about.st_ino}\n".encode())
+        except OSError:
+            found.update(f"{name} -\n".encode())
+    return found.hexdigest()[:20]

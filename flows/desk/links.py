@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
 
-from flows.case import case_links
+from flows.case_files import case_links
 
 DATABASE = "mlflow.db"
 _RUN = """

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
-from flows.desk.views.case_version import version_of
+from flows.desk.index import version_of
 from flows.desk.views.edit_form import Findings
 from sgcad_core.errors import SgcadError, SimulationFailed
 from sgcad_core.system.worker_process import Worker
@@ -147,13 +147,13 @@ def _line(finding: Any) -> str:
 
 def _rerun(folder: Path) -> Done:
     """The whole case once more, as its config says and with what people said of it."""
-    from flows.batch import find_cases
-    from flows.case import chain, revise_case
+    from flows.case import revise_case, run_case
+    from flows.case_files import find_cases
     from sgcad_core.asking.refine import run_at_once
 
     case = revise_case.opened(folder)
     digest = find_cases.digest_of(case.case, case.config)
-    ending = chain.run_case(case.config, case.case, folder.parent.parent, digest, run_at_once)
+    ending = run_case.run_case(case.config, case.case, folder.parent.parent, digest, run_at_once)
     return Done(str(ending.result["status"]), {}, float(sum(ending.result["seconds"].values())), True)
 
 

@@ -11,8 +11,8 @@ from fastapi import APIRouter, Request
 from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
 
 from flows.desk.context import STATIC, Desk, Gone
+from flows.desk.index import version_of
 from flows.desk.views import case_view, edit_form, filters
-from flows.desk.views.case_version import version_of
 from flows.desk.views.filters import Asked
 from flows.desk.views.map_shapes import map_of
 from sgcad_core.errors import SgcadError

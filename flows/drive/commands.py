@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager, nullcontext
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, TextIO
 
@@ -116,8 +117,8 @@ def vary(
     role_of: RoleOf = None,
 ) -> None:
     """Vary what a report leaves open: a family of the same crash, as scenario files, in vary/ of each case."""
-    from flows.drive.families import METHODS, Search, family_of
-    from flows.drive.families import vary as write
+    from flows.drive.families import family_of, write_family
+    from flows.drive.hardest_search import METHODS, Search, hardest
     from flows.drive.script_of_case import case_folders
     from sgcad_core.config import driver_entry
 
@@ -130,5 +131,6 @@ def vary(
         raise ConfigError(f"--search {search}: no such search; there are {', '.join(METHODS)}")
     look = Search(entry, roles[0], method) if entry else None
     for folder in case_folders(cases):
-        place = write(family_of(folder, _given(role_of or [])), count, seed, look)
+        family = family_of(folder, _given(role_of or []))
+        place = write_family(family, count, seed, partial(hardest, family, count, seed, look) if look else None)
         typer.echo(str(place))

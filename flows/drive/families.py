@@ -12,17 +12,16 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from flows.case import case_folder
+from flows.case_files import case_folder
 from flows.drive.script_of_case import SURFACES, script_of
 from sgcad_core.case.records import Floats
-from sgcad_core.config import DriverEntry
 from sgcad_core.errors import BadInput
 from sgcad_core.formats.openscenario.writing.entities import SUNS
 from sgcad_core.formats.openscenario.writing.logical import (
@@ -44,20 +43,10 @@ from sgcad_core.handover.script import Script
 from sgcad_core.records.specs import BehaviorSpec
 from sgcad_core.system import temp_folders
 
-Method = Literal["cross-entropy", "map-elites"]
-METHODS: tuple[Method, ...] = ("cross-entropy", "map-elites")
 TRIES = 40
 """Draws a member at most: a family of which fewer are the same crash is too wide."""
 BACK = 0.45
 """Straight run before the logical file's trajectories, of the time to the contact: the fastest pace needs 0.4."""
-
-
-class Search(NamedTuple):
-    """What is looked for: the hardest members for a driver in a role, by one of both methods."""
-
-    driver: DriverEntry
-    role: str
-    method: Method = "cross-entropy"
 
 
 @dataclass(frozen=True)
@@ -84,20 +73,18 @@ def family_of(folder: Path, role_of: Mapping[str, str] | None = None) -> Family:
     return Family(folder, basis, spreads(script, facts, basis.delays), facts)
 
 
-def vary(family: Family, count: int, seed: int, look: Search | None = None) -> Path:
-    """Write a family of so many members, and with a search the hardest ones for a driver; the folder.
+def write_family(family: Family, count: int, seed: int, add: Callable[[Path], None] | None = None) -> Path:
+    """Write a family of `count` members whole or not at all; its folder. `add` writes further files into it.
 
-    Raises BadInput, ConfigError, SimulationFailed.
+    Raises BadInput, and what `add` raises.
     """
     place = family.folder / "vary" / f"seed-{seed}"
     place.parent.mkdir(parents=True, exist_ok=True)
     with temp_folders.beside(place) as partial:
         partial.chmod(0o755)
         _write(family, count, seed, partial)
-        if look is not None:
-            from flows.drive.hardest_search import hardest  # the family's functions are known there
-
-            hardest(family, count, seed, look, partial)
+        if add:
+            add(partial)
         shutil.rmtree(place, ignore_errors=True)
         partial.rename(place)
     return place

@@ -10,14 +10,15 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from flows.case import case_folder
-from flows.drive.families import Family, Search
+from flows.case_files import case_folder
+from flows.drive.families import Family
 from flows.drive.script_of_case import egos
 from sgcad_core.case.records import Floats
+from sgcad_core.config import DriverEntry
 from sgcad_core.errors import ConfigError
 from sgcad_core.handover.drive import drive
 from sgcad_core.handover.family.cross_entropy import Searched, decides, search
@@ -27,12 +28,22 @@ from sgcad_core.handover.family.variant import member, undisturbed
 from sgcad_core.handover.outcome import Came, came
 from sgcad_core.handover.script import staged
 
+Method = Literal["cross-entropy", "map-elites"]
+METHODS: tuple[Method, ...] = ("cross-entropy", "map-elites")
 ROUNDS = 5
 CLOSING_MPS = 2.5
 """Width of a cell in closing speed."""
 TTC_S = (0.5, 1.0, 1.5, 2.0, 3.0)
 """Between cells of the time to collision at which braking began; who never braked has a cell of its own."""
 TOLD = 10
+
+
+class Search(NamedTuple):
+    """A search for the hardest members for a driver in a role, by one of the two methods."""
+
+    driver: DriverEntry
+    role: str
+    method: Method = "cross-entropy"
 
 
 def hardest(family: Family, count: int, seed: int, look: Search, place: Path) -> None:

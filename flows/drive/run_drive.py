@@ -16,8 +16,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
 
-from flows.batch.find_cases import code_digest
-from flows.case import case_folder
+from flows.case_files import case_folder
+from flows.case_files.find_cases import code_digest
 from flows.drive.script_of_case import egos, script_of
 from sgcad_core.config import DriverEntry
 from sgcad_core.errors import SgcadError

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from flows.case import case_folder
+from flows.case_files import case_folder
 from sgcad_core.case.records import ActorInfo
 from sgcad_core.errors import BadInput, ConfigError
 from sgcad_core.formats.sumo.net_xml import parse_net

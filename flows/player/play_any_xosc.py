@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from flows.case import case_folder
+from flows.case_files import case_folder
 from flows.player import player_page
 from flows.player.player_data import COLORS, Mover, View
 from flows.player.road_shapes import Drawing, Strip

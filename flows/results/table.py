@@ -14,8 +14,8 @@ import numpy as np
 from flows.results.layouts import LAYOUTS, Layout
 from flows.results.levels import LABELS
 from flows.results.measures import Measure, study_values
-from flows.results.published import Published, publication
 from flows.results.reading import Arm, Study
+from flows.study.published import Published, publication
 from sgcad_core.case.records import Floats
 from sgcad_core.metrics import statistics
 from sgcad_core.metrics.statistics import Interval

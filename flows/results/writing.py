@@ -14,8 +14,8 @@ from rich.console import Console
 from rich.table import Table as Grid
 
 from flows.results.measures import Measure
-from flows.results.published import publication
 from flows.results.table import Cell, Row, Table, Tables
+from flows.study.published import publication
 from flows.terminal import escape
 
 SIGNIFICANT = 0.05

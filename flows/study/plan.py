@@ -12,19 +12,18 @@ from __future__ import annotations
 
 import copy
 import dataclasses
-import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from flows.batch import find_cases as case_sets
-from flows.batch.find_cases import Case
+from flows.batch import machine
 from flows.batch.plan_batch import Batch, Job, batch_over
-from flows.case import case_folder
-from flows.results.published import publication
-from flows.study import machine
+from flows.case_files import case_folder
+from flows.case_files import find_cases as case_sets
+from flows.case_files.find_cases import Case
+from flows.study.published import publication
 from flows.study.spec import Arm, Study, fault_lines, is_study
 from sgcad_core import settings
 from sgcad_core.config import Config, build, load
@@ -71,7 +70,7 @@ class Plan:
                 "set": list(self.overrides),
             },
             "cases": [case.id for case in self.batch.cases],
-            "dataset_digest": dataset_digest(self.batch.cases),
+            "dataset_digest": case_sets.dataset_digest(self.batch.cases),
             "arms": [_told_of(*pair) for pair in zip(self.study.arms, self.batch.configs, strict=True)],
             "package": version("sg-cadvlm"),
             "git_commit": machine.git_commit(),
@@ -121,12 +120,6 @@ def plan(
 def folder_of(name: str, out: Path) -> Path:
     """Where a study of this name lies."""
     return out.resolve() / "studies" / name
-
-
-def dataset_digest(cases: Iterable[Case]) -> str:
-    """Fingerprint of a set of cases: names and every file's content, whatever their order."""
-    lines = sorted(f"{case.id} {case_sets.source_digest(case.source)}\n" for case in cases)
-    return hashlib.sha256("".join(lines).encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def arms_of(study: Study, out: Path, overrides: Sequence[str] = ()) -> tuple[Config, ...]:

@@ -11,7 +11,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from flows.batch.find_cases import safe_id
+from flows.case_files.find_cases import safe_id
 from flows.study.plan import DOCUMENT, folder_of
 from sgcad_core.errors import ConfigError
 

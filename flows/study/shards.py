@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from flows.batch import find_cases
-from flows.batch.find_cases import Case
 from flows.batch.plan_batch import MAX_JOBS, Batch, Crew, Job, cores
-from flows.batch.stage_cache import Sharing, keys_of
-from flows.case.case_folder import CaseFolder
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
+from flows.case_files import find_cases
+from flows.case_files.case_folder import CaseFolder
+from flows.case_files.find_cases import Case
+from flows.case_files.stage_cache import Sharing, keys_of
 from flows.study.shard_lease import BEAT_S, Lease, LeaseLost
 from flows.study.shared_storage import Share, mark_name
 from sgcad_core.config import Config, build
@@ -182,7 +182,7 @@ def _config(raw: dict[str, Any], arm: str) -> Config:
 
 
 Run = Callable[[Sequence[Job], Crew, Callable[[Job, Ending, str], None]], object]
-"""How a shard's jobs are run: `flows.batch.evaluate_flow.drive` inside a flow run."""
+"""How a shard's jobs are run: `flows.batch.batch_flow.submit_and_follow` inside a flow run."""
 
 
 def work_on(shard: Shard, run: Run, jobs: int | None = None, beat_s: float | None = None) -> Tally:

@@ -25,7 +25,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-from flows.case.case_folder import TRACKED
+from flows.case_files.case_folder import TRACKED
 from sgcad_core.errors import BadInput, MissingTool
 
 DIGEST_CHARS = 16

@@ -24,7 +24,7 @@ from typing import Any, Self
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from flows.batch.find_cases import safe_id
+from flows.case_files.find_cases import safe_id
 from flows.study import cross_product
 from sgcad_core import settings
 from sgcad_core.config_faults import unknown

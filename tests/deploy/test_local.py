@@ -9,8 +9,7 @@ import pytest
 
 from deploy import local
 from deploy.services import Ports
-from flows import doctor
-from flows.deploy import health
+from flows import doctor, health
 from sgcad_core.errors import ConfigError, MissingTool
 
 

@@ -14,7 +14,10 @@ import pytest
 
 from flows import cli
 
-CODE = "from flows import cases, cli; cases._code_digest = lambda: 'as it is'; cli.main()"
+CODE = (
+    "from flows import cli; from flows.case_files import find_cases; "
+    "find_cases._code_digest = lambda: 'as it is'; cli.main()"
+)
 SGCAD = [sys.executable, "-c", CODE]
 """The command; code that is edited while tests run makes no case stale."""
 
@@ -94,6 +97,15 @@ def test_a_judge_whose_program_is_missing_starts_nothing(here, reports, config_f
     assert ended.returncode == 2
     assert "'/no/such/esmini' is no program that can be run: name the esmini binary by `path`" in ended.stderr
     assert not out.exists()
+
+
+def test_the_module_is_the_command_line():
+    ended = subprocess.run([sys.executable, "-m", "flows.cli", "--help"], capture_output=True, text=True)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert "evaluate" in ended.stdout
+    wrong = subprocess.run([sys.executable, "-m", "flows.cli", "run", "none.txt"], capture_output=True, text=True)
+    assert wrong.returncode == 2
+    assert "no such report: none.txt" in wrong.stderr
 
 
 def test_the_version_is_told(here):
@@ -324,13 +336,13 @@ def test_an_interrupted_batch_ends_with_130_and_keeps_what_is_done(reports, conf
 def test_an_interrupt_that_a_library_turns_into_its_own_error_is_still_an_interrupt(reports, config_file, tmp_path):
     """Pydantic does so while it serializes, as Prefect makes it do when it is imported."""
     code = (
-        "import os, signal, time; from flows import cli, start\n"
+        "import os, signal, time; from flows import cli; from flows.batch import run_batch\n"
         "def evaluate(made, on_ending, on_turn=None):\n"
         "    try:\n"
         "        os.kill(os.getpid(), signal.SIGINT); time.sleep(9)\n"
         "    except KeyboardInterrupt as fault:\n"
         "        raise ValueError('Error calling function') from fault\n"
-        "start.evaluate = evaluate; cli.main()\n"
+        "run_batch.evaluate = evaluate; cli.main()\n"
     )
     command = ["evaluate", reports(a=""), "--config", config_file(), "--out", tmp_path / "out"]
     ended = subprocess.run([sys.executable, "-c", code, *map(str, command)], capture_output=True, text=True)
@@ -393,8 +405,7 @@ def _server_of(process):
 def test_deployed_flows_do_the_same_from_plain_parameters(server, reports, config_file, tmp_path):
     folder, config, out = reports(a="", b="REFUSE"), config_file(), tmp_path / "out"
     code = (
-        "import sys; from flows.case.generate import generate_flow\n"
-        "from flows.batch.evaluate_flow import evaluate_flow\n"
+        "import sys; from flows.deploy.evaluate import evaluate_flow, generate_flow\n"
         "folder, config, out = sys.argv[1:]\n"
         "print(generate_flow(folder + '/a', config, out)['status'])\n"
         "print(evaluate_flow([folder], [config], out, jobs=1))\n"

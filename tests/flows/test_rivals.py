@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from flows.batch.find_cases import Case
-from flows.case.chain import run_case
+from flows.case.run_case import run_case
+from flows.case_files.find_cases import Case
 from plugins.retriever.lancedb import LanceDB
 from sgcad_core import settings
 from sgcad_core.config import build, load

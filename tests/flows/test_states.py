@@ -7,13 +7,13 @@ from uuid import uuid4
 
 import pytest
 
-from flows.batch.evaluate_flow import run_name
-from flows.batch.find_cases import Case
+from flows.batch.batch_flow import run_name
+from flows.batch.prefect_case_end import shows_every_step
 from flows.batch.prefect_case_task import _state
 from flows.batch.prefect_tasks import Graph
-from flows.case.case_end import shows_every_step
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
 from flows.case.step_log import Step
+from flows.case_files.find_cases import Case
 
 ACCOUNT = {"verdict": "lacking", "told": 5, "has": 3, "lacking": 2, "assumed": 0, "items": []}
 

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from flows.batch.find_cases import Case
-from flows.case.chain import run_case
+from flows.case.run_case import run_case
+from flows.case_files.find_cases import Case
 from sgcad_core import settings
 from sgcad_core.config import build, load
 from tests import transcripts

@@ -16,11 +16,10 @@ from pathlib import Path
 
 from prefect import flow
 
-from flows.batch.evaluate_flow import drive
-from flows.batch.find_cases import Case
-from flows.batch.plan_batch import MAX_JOBS, Crew, Job, batch_of
+from flows.batch.batch_flow import run_inside_flow
+from flows.batch.plan_batch import MAX_JOBS, batch_of
 from flows.batch.prefect_case_task import threads
-from flows.case.chain import Ending
+from flows.case_files.find_cases import Case
 from flows.deploy.defaults import inbox_address, overrides_of
 from flows.deploy.inbox.claims import Claims
 from flows.deploy.inbox.intake import Do, Intake, OnResult
@@ -70,14 +69,7 @@ def _by_tasks(config: str, out: str, overrides: tuple[str, ...], jobs: int | Non
 
     def do(cases: Sequence[Case], on_result: OnResult) -> None:
         batch = batch_of(cases, [Path(config)], Path(out), overrides, jobs)
-        plan, crew = batch.plan(), Crew(batch)
-
-        def ended(job: Job, ending: Ending, untracked: str) -> None:
-            on_result(job.case, ending.result)
-
-        crew.begin(plan)
-        drive(plan, crew, ended)
-        crew.close()
+        run_inside_flow(batch, lambda job, ending, _untracked: on_result(job.case, ending.result))
 
     return do
 

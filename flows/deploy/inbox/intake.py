@@ -22,7 +22,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
-from flows.batch.find_cases import SUFFIXES, Case, safe_id
+from flows.case_files.find_cases import SUFFIXES, Case, safe_id
 from flows.deploy.inbox.claims import ALONE_FROM, MAX_TAKES, Claim, Claims
 from flows.deploy.storage import HIDDEN, Entry, Place, Stamp
 from sgcad_core.result import counts_of

@@ -15,8 +15,8 @@ import numpy as np
 
 from flows.player.player_highlights import road_along, road_axes
 from flows.player.road_shapes import drawing_of
-from flows.results.figures.scene import Scene, scene_of
 from flows.results.reading import Ran
+from flows.results.report.scene import Scene, scene_of
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.roads.lane_graph import Edge, Floats, Lane, LaneGraph, road_of

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flows.case.model_calls import ask_of
+from flows.case.chain import ask_of
 from sgcad_core.case.records import Context, CrashReport, Generation, Query
 from sgcad_core.config import Config
 from sgcad_core.errors import InvalidOutput, Refused

@@ -75,8 +75,8 @@ def _heed(event: str, arguments: tuple[Any, ...]) -> None:
 
 def ended(report: str, place: Path, config: str = "template.yaml") -> dict[str, Any]:
     """What becomes of a report in a config: its status, declared collision and specs."""
-    from flows.batch.find_cases import Case
-    from flows.case.chain import run_case
+    from flows.case.run_case import run_case
+    from flows.case_files.find_cases import Case
     from sgcad_core.config import load
 
     (source := place / "r.txt").write_text(report, encoding="utf-8")

@@ -22,7 +22,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from flows.case import case_folder
+from flows.case_files import case_folder
 from sgcad_core.case.records import ActorInfo, Execution, Floats, RoadNetwork, Scenario, Trajectory
 from sgcad_core.errors import SgcadError
 from sgcad_core.execution.contact import realised

@@ -19,8 +19,8 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT))
 
-from flows.batch.find_cases import Case, cases_in  # noqa: E402
-from flows.case.chain import run_case  # noqa: E402
+from flows.case.run_case import run_case  # noqa: E402
+from flows.case_files.find_cases import Case, cases_in  # noqa: E402
 from sgcad_core import settings  # noqa: E402
 from sgcad_core.config import build, load  # noqa: E402
 from tests import transcripts, transcripts_rivals  # noqa: E402

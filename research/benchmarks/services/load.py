@@ -92,15 +92,15 @@ def say(line: str) -> None:
 
 def real_case(place: Path) -> Path:
     """The folder of a bundled report, run once."""
-    from flows.batch import find_cases
-    from flows.case import chain
+    from flows.case import run_case
+    from flows.case_files import find_cases
     from sgcad_core import settings
     from sgcad_core.config import load
 
     settings.quiet_libraries()
     config = load("template.yaml", ("tracker=none",))
     (case, *_) = find_cases.cases_in([DEMO])
-    chain.run_case(config, case, place / "runs", find_cases.digest_of(case, config))
+    run_case.run_case(config, case, place / "runs", find_cases.digest_of(case, config))
     return place / "runs" / config.name / case.id
 
 
@@ -252,9 +252,9 @@ def give_prefect(cases: int, case_folder: str) -> None:
     from prefect.runtime import flow_run, task_run
     from prefect.task_runners import ThreadPoolTaskRunner
 
+    from flows.batch.prefect_case_end import showing
     from flows.batch.prefect_case_task import hush_prefect
     from flows.batch.prefect_tasks import Graph
-    from flows.case.case_end import showing
     from flows.case.step_log import Step
 
     hush_prefect()

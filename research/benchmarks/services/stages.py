@@ -68,7 +68,7 @@ def inside(cases: Path, out: Path, overrides: list[str]) -> None:
     """The measured process: one batch; prints the processor seconds of this process without its children."""
     from flows.batch import plan_batch as batches
     from flows.batch import progress_bar, run_batch, summary
-    from flows.batch.find_cases import cases_in
+    from flows.case_files.find_cases import cases_in
 
     made = batches.batch_of(cases_in([cases]), [Path("template.yaml")], out, overrides)
     with progress_bar.watching(summary.Tally(made)) as watch:

@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flows.case.model_calls import ask_of
+from flows.case.chain import ask_of
 from research.benchmarks.texts import answer_cache
 from research.benchmarks.texts.incidents import Incident
 from research.benchmarks.texts.weight_fit import calibration_error, logistic, versus

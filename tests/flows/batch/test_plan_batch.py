@@ -5,8 +5,8 @@ from concurrent.futures import CancelledError
 
 import pytest
 
-from flows.batch.find_cases import cases_in
 from flows.batch.plan_batch import Crew, Interrupted, batch_of
+from flows.case_files.find_cases import cases_in
 from sgcad_core.asking.refine import run_at_once
 from sgcad_core.errors import ConfigError, MissingTool
 

@@ -9,7 +9,7 @@ from rich.progress import Progress
 from flows.batch import progress_bar
 from flows.batch.progress_bar import Watch
 from flows.batch.summary import Tally
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
 
 
 def job(case):

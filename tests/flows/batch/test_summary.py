@@ -9,7 +9,7 @@ import pytest
 from flows.batch import summary
 from flows.batch.prefect_case_task import Board
 from flows.batch.prefect_tasks import Graph
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
 from flows.case.step_log import Step
 
 CASES = 24

@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 from flows.batch import track_cases
-from flows.batch.find_cases import Case
 from flows.batch.plan_batch import Job
-from flows.case.case_folder import CaseFolder
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
+from flows.case_files.case_folder import CaseFolder
+from flows.case_files.find_cases import Case
 from sgcad_core.config import load
 from sgcad_core.errors import MissingTool
 from sgcad_core.interfaces import Tracker

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from flows.batch import config_folder, find_cases
-from flows.batch.find_cases import Case
+from flows.batch import config_folder
 from flows.case import person_facts, revise_case
-from flows.case.chain import run_case
+from flows.case.run_case import run_case
+from flows.case_files import find_cases
+from flows.case_files.find_cases import Case
 from flows.desk import export_edits
 from sgcad_core.config import load
 from sgcad_core.errors import BadInput, WrongEdit

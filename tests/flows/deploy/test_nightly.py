@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from flows.batch.find_cases import cases_in
 from flows.batch.plan_batch import Crew, batch_of
+from flows.case_files.find_cases import cases_in
 from flows.deploy import nightly
 from flows.deploy.nightly import Tolerance, accept_latest, drops, figures_of
 from sgcad_core.asking.refine import run_at_once

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from flows.case import revise_case
+from flows.desk.index import version_of
 from flows.desk.mending import Changed, Mender, Order
 from flows.desk.views import edit_form
-from flows.desk.views.case_version import version_of
 from sgcad_core.errors import SimulationFailed
 
 CASE = "left-turn-at-signal"

@@ -12,8 +12,8 @@ from rich.console import Console
 
 from flows.results import measures, writing
 from flows.results.layouts import LAYOUTS
-from flows.results.published import publication
 from flows.results.refusal import counts
+from flows.study.published import publication
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 

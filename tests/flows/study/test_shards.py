@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flows.batch import find_cases
 from flows.batch import plan_batch as batches
-from flows.batch.find_cases import Case
 from flows.batch.plan_batch import Crew, Job
-from flows.case.case_folder import CaseFolder
+from flows.case_files import find_cases
+from flows.case_files.case_folder import CaseFolder
+from flows.case_files.find_cases import Case
 from flows.study.shard_lease import Lease, LeaseLost, lease_name
 from flows.study.shards import Shard, Work, cut, lay_out, work_on
 from flows.study.shared_storage import Share, Unreachable
@@ -43,7 +43,7 @@ def plan(tmp_path, config_file, reports):
 
 
 def run(plan, crew, hand_in):
-    """What `flows.batch.evaluate_flow.drive` does, without Prefect's view of it."""
+    """What `flows.batch.batch_flow.submit_and_follow` does, without Prefect's view of it."""
     for job in plan:
         hand_in(job, crew.finish(job, run_at_once), "")
 

@@ -15,8 +15,8 @@ REPORTS, KILL_AT = 20, 5
 WORKER = """
 import sys
 from pathlib import Path
-from flows import cases
-cases._code_digest = lambda: "as it is"
+from flows.case_files import find_cases
+find_cases._code_digest = lambda: "as it is"
 from flows.batch.plan_batch import Crew, batch_of
 from flows.deploy.inbox.claims import Claims
 from flows.deploy.inbox.intake import Intake

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from flows.case import case_folder
+from flows.case_files import case_folder
 from research.benchmarks.scenes.encodings import _away, main
 from sgcad_core.execution.scenario import compile_scenario
 from tests.plugins.simulator.fake_esmini import log, make

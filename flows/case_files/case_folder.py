@@ -1,0 +1,256 @@
+"""A case's folder on disk, as docs/configs.md promises it: written whole or not at all.
+
+Everything goes into a hidden folder beside the target, result.json and the digest last, then one rename:
+a kill, a full disk or Ctrl-C leaves no half case that looks finished.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import errno
+import json
+import math
+import os
+import shutil
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sgcad_core.case.records import Attempt, CrashReport, RoadNetwork, Scenario, Trajectory
+from sgcad_core.errors import BadInput, ConfigError
+from sgcad_core.result import CaseRecord
+
+CONFIG = "config.yaml"
+"""In the folder of a config's cases: the effective config."""
+DIGEST = ".digest"
+TRACKED = ".tracked"
+PARTIAL = ".partial-"
+REPLACE_TRIES = 20
+"""How often two processes that finish the same case may get in each other's way."""
+MIN_FREE_MB = 50
+"""Below this nothing is started; a case takes 1 to 3 MB."""
+
+
+@dataclass(frozen=True)
+class CaseFolder:
+    """Where one case of one config lies."""
+
+    out: Path
+    config: str
+    case: str
+
+    @property
+    def path(self) -> Path:
+        """The folder itself."""
+        return self.out / self.config / self.case
+
+    def finished(self, digest: str) -> dict[str, Any] | None:
+        """result.json if the case is done with this very digest, else None."""
+        try:
+            if (self.path / DIGEST).read_text(encoding="utf-8") != digest:
+                return None
+        except (OSError, ValueError):
+            return None
+        return self.result()
+
+    def result(self) -> dict[str, Any] | None:
+        """result.json, whatever it was made of; None if there is none that can be read."""
+        try:
+            result = json.loads((self.path / "result.json").read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return None
+        return result if isinstance(result, dict) and "status" in result else None
+
+    @contextmanager
+    def writing(self) -> Iterator[Path]:
+        """A fresh folder that becomes the case's folder when the block ends well, and vanishes otherwise."""
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        partial = Path(tempfile.mkdtemp(prefix=f"{PARTIAL}{os.getpid()}-", dir=self.path.parent))
+        try:
+            yield partial
+            partial.chmod(0o755)
+            self._replace(partial)
+        finally:
+            shutil.rmtree(partial, ignore_errors=True)
+
+    def _replace(self, partial: Path) -> None:
+        """Put the new folder in the old one's place, even while another process does the same (the last one stays)."""
+        old = Path(tempfile.mkdtemp(prefix=f"{PARTIAL}{os.getpid()}-", dir=self.path.parent))
+        try:
+            for turn in range(REPLACE_TRIES):
+                with contextlib.suppress(FileNotFoundError):
+                    self.path.rename(old / str(turn))
+                with _unless_there():
+                    partial.rename(self.path)
+                    return
+            raise OSError(errno.EBUSY, "other processes write the same case", str(self.path))
+        finally:
+            shutil.rmtree(old, ignore_errors=True)
+
+    def tracked(self, tracker: str) -> bool:
+        """Whether this tracker has the case already."""
+        mark = self.path / TRACKED
+        return mark.is_file() and tracker in mark.read_text(encoding="utf-8").splitlines()
+
+    def mark_tracked(self, tracker: str) -> None:
+        """Note that this tracker has the case."""
+        with (self.path / TRACKED).open("a", encoding="utf-8") as file:
+            file.write(tracker + "\n")
+
+
+@contextmanager
+def _unless_there() -> Iterator[None]:
+    """Pass over that a folder stands in the way."""
+    try:
+        yield
+    except OSError as fault:
+        if fault.errno not in (errno.ENOTEMPTY, errno.EEXIST):
+            raise
+
+
+def check_writable(out: Path) -> None:
+    """Make the output folder. Raises ConfigError if it cannot be written or the disk is full."""
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(prefix=PARTIAL, dir=out):
+            pass
+    except OSError as fault:
+        raise ConfigError(f"--out {out}: cannot be written ({fault.strerror}); choose another folder") from fault
+    free_mb = shutil.disk_usage(out).free // 2**20
+    if free_mb < MIN_FREE_MB:
+        raise ConfigError(f"--out {out}: {free_mb} MB free, {MIN_FREE_MB} are needed; free some or choose another disk")
+
+
+def clear_partial(folder: Path) -> int:
+    """Remove what killed processes left behind; how many folders it was."""
+    left = [p for p in folder.glob(f"{PARTIAL}*-*") if p.is_dir() and not _alive(p.name.split("-")[1])]
+    for partial in left:
+        shutil.rmtree(partial, ignore_errors=True)
+    return len(left)
+
+
+def _alive(pid: str) -> bool:
+    try:
+        os.kill(int(pid), 0)
+    except (ValueError, ProcessLookupError):
+        return False
+    except PermissionError:
+        return True
+    return True
+
+
+# ------------------------------------------------------------------ files
+def write_artifacts(folder: Path, report: CrashReport | None, attempts: Iterable[Attempt], record: CaseRecord) -> None:
+    """Report, attempts, road network, scenario and trajectories, as far as there are any."""
+    write_report(folder, report)
+    write_attempts(folder, attempts)
+    if record.network:
+        write_network(folder, record.network)
+    if record.scenario:
+        write_scenario(folder, record.scenario)
+    if record.execution:
+        write_trajectories(folder / "trajectories.csv", record.execution.trajectories)
+
+
+def write_report(folder: Path, report: CrashReport | None) -> None:
+    """report.txt (empty if the report could not be read) and diagram.png, diagram-2.png, ..."""
+    (folder / "report.txt").write_text(report.narrative if report else "", encoding="utf-8")
+    for number, diagram in enumerate(report.diagrams if report else (), 1):
+        (folder / ("diagram.png" if number == 1 else f"diagram-{number}.png")).write_bytes(diagram.png)
+
+
+def write_attempts(folder: Path, attempts: Iterable[Attempt]) -> None:
+    """attempts/<stage>-<nn>/: prompt.txt, answer.txt, findings.json, attempt.json."""
+    (folder / "attempts").mkdir()
+    for attempt in attempts:
+        place = folder / "attempts" / f"{attempt.stage}-{attempt.number:02d}"
+        place.mkdir()
+        (place / "prompt.txt").write_text(attempt.prompt, encoding="utf-8", errors="replace")
+        (place / "answer.txt").write_text(attempt.answer, encoding="utf-8", errors="replace")
+        write_json(place / "findings.json", [f.model_dump() for f in attempt.findings])
+        write_json(place / "attempt.json", _about(attempt))
+
+
+def _about(attempt: Attempt) -> dict[str, Any]:
+    about: dict[str, Any] = {"stage": attempt.stage, "number": attempt.number, "seconds": round(attempt.seconds, 4)}
+    if attempt.held:
+        about["held"] = [hold.line() for hold in attempt.held]
+    if generation := attempt.generation:
+        about["generation"] = {
+            "finish": generation.finish,
+            "prompt_tokens": generation.prompt_tokens,
+            "answer_tokens": len(generation.tokens),
+            "model_calls": generation.model_calls,
+            "seconds": generation.seconds,
+            "grounding": dict(generation.grounding),
+            "notes": list(generation.notes),
+        }
+    return about
+
+
+def write_network(folder: Path, network: RoadNetwork) -> None:
+    """road.net.xml and road.xodr, as far as they were compiled."""
+    for name, text in (("road.net.xml", network.net_xml), ("road.xodr", network.xodr)):
+        if text is not None:
+            (folder / name).write_text(text, encoding="utf-8")
+
+
+def write_scenario(folder: Path, scenario: Scenario) -> None:
+    """scenario.xosc or scenario.rou.xml."""
+    for name, text in (("scenario.xosc", scenario.xosc), ("scenario.rou.xml", scenario.routes_xml)):
+        if text is not None:
+            (folder / name).write_text(text, encoding="utf-8")
+
+
+def write_trajectories(file: Path, trajectories: Sequence[Trajectory]) -> None:
+    """trajectories.csv: t_s, actor, x_m, y_m, heading_rad, speed_mps; all actors of an instant together.
+
+    Where somebody rolls over there is a column roll_rad behind them.
+    """
+    rolls = any(track.roll_rad is not None for track in trajectories)
+    rows = []
+    for k, track in enumerate(trajectories):
+        columns = (track.t_s, track.x_m, track.y_m, track.heading_rad, track.speed_mps, track.rolls)
+        for t, x, y, heading, speed, roll in zip(*columns, strict=True):
+            more = f",{roll:.5f}" if rolls else ""
+            rows.append((float(t), k, f"{t:.2f},{track.actor},{x:.6f},{y:.6f},{heading:.7f},{speed:.4f}{more}\n"))
+    with file.open("w", encoding="utf-8", newline="") as out:
+        out.write(f"t_s,actor,x_m,y_m,heading_rad,speed_mps{',roll_rad' if rolls else ''}\n")
+        out.writelines(row for _, _, row in sorted(rows))
+
+
+def read_trajectories(file: Path) -> tuple[Trajectory, ...]:
+    """What `write_trajectories` wrote, actors in the order of the file. Raises BadInput for anything else."""
+    needed = ("t_s", "x_m", "y_m", "heading_rad", "speed_mps")
+    rows: dict[str, list[list[float]]] = {}
+    with file.open(encoding="utf-8", newline="") as lines:
+        try:
+            table = csv.DictReader(lines)
+            names = [*needed, *(name for name in table.fieldnames or () if name == "roll_rad")]
+            for row in table:
+                rows.setdefault(row["actor"], []).append([_finite(row[name]) for name in names])
+        except (KeyError, TypeError, ValueError, csv.Error) as fault:
+            raise BadInput(
+                f"{file}: no trajectories of ours ({str(fault)[:100]}): every row needs actor and, as finite numbers, "
+                f"{', '.join(needed)}; run the case again"
+            ) from fault
+    return tuple(
+        Trajectory(actor=actor, **dict(zip(names, np.array(values).T, strict=True))) for actor, values in rows.items()
+    )
+
+
+def _finite(text: str) -> float:
+    if not math.isfinite(value := float(text)):
+        raise ValueError(f"{text!r} is no finite number")
+    return value
+
+
+def write_json(file: Path, content: Any) -> None:
+    """Indented UTF-8 JSON; NaN and infinities are refused (no strict reader takes them)."""
+    file.write_text(json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
