@@ -37,7 +37,7 @@ def begin(api: str) -> None:
 
 
 def end(api: str) -> None:
-    """Cancel what watches: its process ends with the worker, and nobody else would tell the server."""
+    """Cancel the watching run: its process ends with the worker and cannot tell the server."""
     try:
         for run in _runs(api, ("PENDING", "RUNNING")):
             _asked(api, f"flow_runs/{run['id']}/set_state", {"state": {"type": "CANCELLED"}, "force": True})

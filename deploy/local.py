@@ -86,7 +86,7 @@ def _hears_a_worker(api: str) -> bool:
 
 
 def _check_ports(asked: Sequence[Service]) -> None:
-    """Raises ConfigError naming every port that somebody else has."""
+    """Raises ConfigError naming every port that another program has."""
     taken = [s for s in asked if _is_taken(s.port)]
     if taken:
         which = "; ".join(f"port {s.port} of the {s.name} is taken by another program" for s in taken)

@@ -37,7 +37,7 @@ def main(arguments: Sequence[str] = ()) -> int:
 
 
 def met(tally: summary.Tally) -> list[str]:
-    """One line a case: who hits whom, or why nothing does."""
+    """One line per case: its first contact, or why there is no scenario."""
     results = sorted((ending.result for _, ending in tally.endings), key=lambda result: str(result["case"]))
     return [
         f"{result['case']}: {case_in_words.contact(result) if result['status'] == 'generated' else result['reason']}"

@@ -1,7 +1,7 @@
-"""Are the services there: server, worker, MLflow, deployments? Read by `sgcad doctor`, waited for by `make up`.
+"""State of the services (server, worker, MLflow, deployments), for `sgcad doctor` and `make up`.
 
-What runs here is told by `<out>/services/*.json`, one file a service, written by deploy/local.py; what a Prefect
-server has is asked of the server itself. Knows HTTP, no Prefect and no MLflow.
+Services on this machine are noted in `<out>/services/*.json`, one file each, by deploy/local.py; workers and
+deployments are asked of the Prefect server over HTTP.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ SAME_S = 2.0
 
 @dataclass(frozen=True)
 class Running:
-    """A service that was started here: its process, where it answers, where it writes."""
+    """A service started on this machine: process, addresses and log."""
 
     name: str
     pid: int
@@ -38,7 +38,7 @@ class Running:
     log: str
 
     def alive(self) -> bool:
-        """Whether this very process still runs."""
+        """Whether this process still runs."""
         try:
             process = psutil.Process(self.pid)
             return bool(abs(process.create_time() - self.born) < SAME_S and process.status() != psutil.STATUS_ZOMBIE)
@@ -46,27 +46,27 @@ class Running:
             return False
 
     def healthy(self) -> bool:
-        """Whether it runs and says that it is well."""
+        """Whether it runs and its health check passes."""
         return self.alive() and answers(self.health)
 
     def write(self, folder: Path) -> None:
-        """Note it."""
+        """Write the service's note into a folder."""
         (folder / f"{self.name}.json").write_text(json.dumps(asdict(self), indent=1) + "\n", encoding="utf-8")
 
 
 def services_folder(out: Path) -> Path:
-    """Where what runs here is noted, with its logs."""
+    """Folder of the notes and logs of services."""
     return out / "services"
 
 
 def noted(folder: Path) -> dict[str, Running]:
-    """Services noted in a folder, by name; they may have ended since."""
+    """Services noted in a folder, by name; some may have ended since."""
     found = (json.loads(file.read_text(encoding="utf-8")) for file in sorted(folder.glob("*.json")))
     return {about["name"]: Running(**about) for about in found}
 
 
 def answers(url: str) -> bool:
-    """Whether a URL answers that all is well. Asked often while services start: httpx would take 20 ms each time."""
+    """Whether a URL answers 200. Called often while services start: httpx would take 20 ms each time."""
     try:
         with urllib.request.urlopen(url, timeout=ASK_S) as answer:  # noqa: S310 - an address of our own service
             return bool(answer.status == HTTPStatus.OK)
@@ -76,7 +76,7 @@ def answers(url: str) -> bool:
 
 # ------------------------------------------------------------------ what a Prefect server has
 def key_of(auth: str = "") -> tuple[str, str] | None:
-    """User and password that a server wants, by default of the variable PREFECT_API_AUTH_STRING."""
+    """User and password for a server, by default from the variable PREFECT_API_AUTH_STRING."""
     user, _, password = (auth or settings.environment("PREFECT_API_AUTH_STRING")).partition(":")
     return (user, password) if user else None
 
@@ -90,7 +90,7 @@ def _asked(api: str, path: str, auth: str) -> list[dict[str, Any]]:
 
 
 def workers_online(api: str, pool: str = POOL, auth: str = "") -> list[str]:
-    """Names of the workers that the server hears of; none if there is no such pool. Raises httpx.HTTPError."""
+    """Names of the pool's workers that are online; none if there is no such pool. Raises httpx.HTTPError."""
     try:
         workers = _asked(api, f"work_pools/{pool}/workers/filter", auth)
     except httpx.HTTPStatusError as fault:
@@ -101,7 +101,7 @@ def workers_online(api: str, pool: str = POOL, auth: str = "") -> list[str]:
 
 
 def deployments(api: str, auth: str = "") -> dict[str, str]:
-    """Deployments of our pool, by name, with when they start in words. Raises httpx.HTTPError."""
+    """The pool's deployments by name, with their schedules in words. Raises httpx.HTTPError."""
     found = _asked(api, "deployments/filter", auth)
     return {d["name"]: _when(d) for d in sorted(found, key=lambda d: d["name"]) if d["work_pool_name"] == POOL}
 
@@ -115,12 +115,12 @@ def _when(deployment: dict[str, Any]) -> str:
 
 
 def server_lines(api: str, auth: str = "") -> Iterator[tuple[bool, str]]:
-    """What a server has, line by line, and whether that is as it should be."""
+    """Lines on a server's workers and deployments, each with whether it is as it should be."""
     try:
         workers, deployed = workers_online(api, auth=auth), deployments(api, auth)
     except httpx.HTTPError as fault:
         yield False, f"{api} does not answer ({type(fault).__name__})"
         return
-    yield bool(workers), f"workers online: {', '.join(workers) or 'none, so that nothing scheduled is done'}"
+    yield bool(workers), f"workers online: {', '.join(workers) or 'none, so scheduled runs do not start'}"
     listed = ", ".join(f"{name} ({when})" for name, when in deployed.items())
     yield bool(deployed), f"deployments: {listed or 'none; prefect deploy --all --prefect-file deploy/prefect.yaml'}"

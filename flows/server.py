@@ -71,7 +71,7 @@ class Server:
                 )
 
     def wait(self) -> None:
-        """Return when the server answers. Raises MissingTool if it never does, ServerLost if somebody killed it."""
+        """Return when the server answers. Raises MissingTool if it never does, ServerLost if it was killed."""
         deadline = time.monotonic() + START_S
         while self.process.poll() is None and time.monotonic() < deadline:
             if answers(self.address):
@@ -86,7 +86,7 @@ class Server:
         )
 
     def ended(self) -> str:
-        """How the process ended though nobody stopped it; empty while it runs."""
+        """How the process ended by itself; empty while it runs."""
         if (code := self.process.poll()) is None:
             return ""
         return f"was killed by signal {-code}" if code < 0 else f"ended with code {code}"

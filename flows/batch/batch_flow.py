@@ -28,22 +28,21 @@ from sgcad_core import settings
 MOST_NAMED = 3
 """Configs that the name of a flow run names."""
 DRAIN_S, STOP_S = 60.0, 2.0
-"""How long the last states may take to reach the server, at an ordinary end and after a fault or Ctrl-C."""
+"""Maximum wait for the last states to reach the server, at a normal end and after a fault or Ctrl-C."""
 
 
 def run_flow(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding, lasting: bool = False) -> None:
     """Run a batch as one flow run. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
 
-    Where the server is `lasting` the crew begins here, so that no case began before the flow run that shows it.
+    With a `lasting` server the crew starts here, so that no case starts before the flow run that shows it.
 
-    Returns when the server has every state: they travel as events in the background, and a server of our own
-    ends with the command. Prefect's heartbeat is off: its thread costs every flow a second, and a person
-    watches this one.
+    Returns when the server has every state: states are sent as events in the background, and a server of the command
+    ends with it. Prefect's heartbeat is off: its thread costs every flow a second.
     """
     hush_prefect()
     with temporary_settings({PREFECT_FLOWS_HEARTBEAT_FREQUENCY: None} | _server_named()):
         run: list[tuple[str, int]] = []
-        patience = STOP_S  # after a fault nobody may be there to take the last states
+        patience = STOP_S  # after a fault the server may be gone
         try:
             flow_of = _flow(batch, plan, crew, on_ending, run, lasting)
             flow_of([c.name for c in batch.configs], len(batch.cases), str(batch.out))
@@ -55,13 +54,13 @@ def run_flow(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding,
 
 
 def _server_named() -> dict[Any, str]:
-    """The server of now: Prefect read its settings when it was imported, and a lost server has a successor."""
+    """Settings that name the current server: Prefect read its settings on import, and a lost server is replaced."""
     url = settings.prefect_url()
     return {PREFECT_API_URL: url} if url else {}
 
 
 def run_name(batch: Batch) -> str:
-    """What a flow run does, in a few words: "template over 12 reports"."""
+    """Name of a batch's flow run, such as "template over 12 reports"."""
     configs = ", ".join(config.name for config in batch.configs[:MOST_NAMED])
     more = f" and {len(batch.configs) - MOST_NAMED} more" if len(batch.configs) > MOST_NAMED else ""
     reports = batch.cases[0].id if len(batch.cases) == 1 else f"{len(batch.cases)} reports"
@@ -69,7 +68,7 @@ def run_name(batch: Batch) -> str:
 
 
 def _settle(identity: str, task_runs: int, patience: float) -> None:
-    """Wait until the server has so many ended task runs of a flow run, or patience ends."""
+    """Wait until the server has `task_runs` ended task runs of a flow run, at most `patience` seconds."""
     ended = {"type": {"any_": ["COMPLETED", "FAILED", "CRASHED", "CANCELLED"]}}
     body = {"flow_runs": {"id": {"any_": [identity]}}, "task_runs": {"state": ended}}
     deadline = time.monotonic() + patience
@@ -83,7 +82,7 @@ def _settle(identity: str, task_runs: int, patience: float) -> None:
 def _flow(
     batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding, run: list[tuple[str, int]], lasting: bool
 ) -> Any:
-    """The flow of one batch; its parameters are for people to read. Its id and task runs go into `run`."""
+    """The flow of one batch; its parameters are for display. Its id and number of task runs are added to `run`."""
     runner = threads(batch.jobs)
 
     @flow(
@@ -133,6 +132,6 @@ def _follow(board: Board, submitted: dict[Any, Job], on_ending: OnEnding, shown:
             raise board.fatal
         job = submitted[done]
         if job.name not in board.endings:
-            done.result()  # the task itself crashed: Prefect's own fault, said as it is
+            done.result()  # the task itself crashed: Prefect's own fault is raised
         ending, graph = board.take(job.name)
         on_ending(job, ending, shown.case(job, ending, graph))

@@ -1,4 +1,4 @@
-"""What a study ran on: processor, memory, graphics cards, and the commit of the code. Names no host and no user."""
+"""The machine of a run: processor, memory, graphics cards, and the commit of the code; no host or user name."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def hardware() -> dict[str, Any]:
 
 
 def git_commit() -> str | None:
-    """The commit of the code, "-dirty" behind it where the work tree differs; None outside a repository."""
+    """The commit of the code, with "-dirty" appended if the work tree differs; None outside a repository."""
     commit = _asked(["git", "rev-parse", "HEAD"])
     if not commit or not (settings.ROOT / ".git").exists():
         return None
@@ -45,7 +45,7 @@ def _processor() -> str:
 
 
 def _asked(command: list[str]) -> list[str]:
-    """A program's lines; none where it is not there, fails or hangs."""
+    """A program's output lines; empty if it is missing, fails or hangs."""
     program = shutil.which(command[0])
     if program is None:
         return []

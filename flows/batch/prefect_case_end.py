@@ -1,4 +1,4 @@
-"""The end of a case in Prefect: tracked, its links kept, its artifact (result, lacks, picture, links) as markdown.
+"""The end of a case: tracked, its links kept, its Prefect artifact (result, account, picture, links) made.
 
 Called from the flow's own thread. Import after `settings.quiet_libraries()`.
 """
@@ -31,14 +31,14 @@ from sgcad_core import settings
 from sgcad_core.result import counts_of
 
 BULK_STATES = 10
-"""States of task runs that a server writes at once, from which on it writes in bulk."""
+"""Batch size from which a server counts as writing states of task runs in bulk."""
 ARTIFACTS_S = 20.0
-"""How long a server may take for an artifact; the case is done either way."""
+"""Time limit of a request to the server, s."""
 
 
 @dataclass
 class Showing:
-    """Shows the cases of one batch as they end. `lasting`: the server outlives the batch, so its address is kept."""
+    """Tracks and shows the cases of one batch as they end. `lasting`: the server outlives the batch."""
 
     lasting: bool
     _client: Any
@@ -46,10 +46,10 @@ class Showing:
     _silent: bool = False
 
     def case(self, job: Job, ending: Ending, graph: Graph | None) -> str:
-        """Track a case and show what came of it; why it could not be tracked. Raises ConfigError (`track_safely`)."""
+        """Track a case and show its result; why it could not be tracked, or "". Raises ConfigError (`track_safely`)."""
         if graph is None or ending.reused:
             untracked = track_cases.track_safely(job, ending)
-            self._link_to_tracker(job)  # a case whose batch ended before it was logged is logged now
+            self._link_to_tracker(job)  # a case of an interrupted batch is logged now
             return untracked
         self._link(job, graph)
         began = time.time()
@@ -62,19 +62,19 @@ class Showing:
         return untracked
 
     def _link(self, job: Job, graph: Graph) -> None:
-        """Keep where the case is to be seen in Prefect, for its tracker too."""
+        """Keep the links of the case in Prefect, which its tracker shows too."""
         base = _pages() if self.lasting else ""
         found = {"prefect": f"{base}/runs/flow-run/{graph.flow_run}"}
         case_links.keep(job.folder.path, found | {"prefect_case": f"{base}/runs/task-run/{graph.task_run}"})
 
     @staticmethod
     def _link_to_tracker(job: Job) -> None:
-        """Keep where the tracker shows the case, if it was logged by this process."""
+        """Keep the link to the tracker's page of the case, if this process logged it."""
         if page := job.config.tracker.page(job.config.name, job.case.id):
             case_links.keep(job.folder.path, {"mlflow": page})
 
     def artifact(self, folder: Path, name: str, result: Mapping[str, Any], graph: Graph) -> None:
-        """Hand Prefect a case's artifact; `name` is the job's."""
+        """Send a case's artifact to Prefect; `name` is the job's."""
         if self._silent:
             return
         out = folder.parent.parent
@@ -91,12 +91,12 @@ class Showing:
         except Exception as fault:  # noqa: BLE001 - a server that takes none costs the artifacts, not the batch
             self._silent = True
             told = logging.getLogger(__name__)
-            told.warning("Prefect takes no artifacts (%s); the cases are done all the same", fault)
+            told.warning("Prefect accepts no artifacts (%s); cases are still run and written", fault)
 
 
 def shows_every_step() -> bool:
-    """Whether Prefect is shown every step of a case: as SGCAD_PREFECT_STEPS says ("all", "attempts"), else where the
-    server writes states in bulk. One that writes each by itself takes 8 ms more a step, 150 ms a case with all of them.
+    """Whether Prefect is shown every step of a case: as SGCAD_PREFECT_STEPS says ("all", "attempts"), else if the
+    server writes states in bulk. A server that writes them one by one needs 8 ms more per step, 150 ms per case.
     """
     if asked := settings.environment("SGCAD_PREFECT_STEPS"):
         return asked == "all"
@@ -111,7 +111,7 @@ def shows_every_step() -> bool:
 
 @contextmanager
 def showing(lasting: bool) -> Iterator[Showing]:
-    """What shows the cases of a batch while the block lasts."""
+    """The object that shows the cases of a batch while the block lasts."""
     with get_client(sync_client=True) as client:
         yield Showing(lasting, client)
 
@@ -123,7 +123,7 @@ def _pages() -> str:
 
 # ------------------------------------------------------------------ the artifact
 WIDE_PX, COLORS = 420, 32
-"""Of the picture: 10 to 20 kB, since it lies in the server's database."""
+"""Size of the picture: 10 to 20 kB, since the server keeps it in its database."""
 MOST_LACKING = 5
 
 
@@ -133,7 +133,7 @@ def artifact_key(name: str) -> str:
 
 
 def markdown(folder: Path, result: Mapping[str, Any], served: Served) -> str:
-    """The artifact of a case that lies in a folder."""
+    """The artifact of the case in a folder."""
     parts = [
         f"# {_plain(folder.name)}: {_plain(_verdict(result))}",
         _picture(folder),
@@ -150,7 +150,7 @@ def _verdict(result: Mapping[str, Any]) -> str:
 
 
 def _told(result: Mapping[str, Any]) -> list[str]:
-    """What happens or why nothing does, and the account as a table."""
+    """The contact or the reason for no scenario, and the account as a table."""
     if result["status"] != "generated":
         return [_plain(str(result["reason"] or result["status"])[:500])]
     near = result.get("near_crash")
@@ -169,7 +169,7 @@ def _contact(result: Mapping[str, Any]) -> str:
 
 
 def _picture(folder: Path) -> str:
-    """The case's picture, small; "" where there is none that can be read."""
+    """The case's picture, made smaller; "" if it is missing or cannot be read."""
     from PIL import Image
 
     try:
@@ -184,7 +184,7 @@ def _picture(folder: Path) -> str:
 
 
 def _page_links(folder: Path, served: Served) -> str:
-    """Where to look: pages that are served, and the folder."""
+    """Links to pages that are served now, and the folder."""
     kept = case_links.kept(folder)
     mlflow = case_links.resolved(kept["mlflow"], served.mlflow) if "mlflow" in kept else ""
     found = [("Desk", served.case_page(folder)), ("MLflow run", mlflow)]
@@ -196,5 +196,5 @@ def _page_links(folder: Path, served: Served) -> str:
 
 
 def _plain(text: str) -> str:
-    """Words as markdown shows them: no markup, no HTML."""
+    """Text with markdown's special characters escaped."""
     return re.sub(r"([\\`*_\[\]<>|#!])", r"\\\1", " ".join(text.split()))

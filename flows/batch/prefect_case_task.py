@@ -1,7 +1,7 @@
-"""Prefect's view of the work: a task run per case; what it shows inside of that stands in flows/batch/prefect_tasks.py.
+"""A Prefect task run per case; its steps are shown by flows/batch/prefect_tasks.py.
 
-Only what Prefect should show stands in its states; results travel beside it (they lie on disk anyway, and
-a cached Prefect result could outlive the folder it speaks of). Import after `settings.quiet_libraries()`.
+States hold only what Prefect shows. Results are passed beside it: they are on disk, and a cached Prefect result could
+outlive its folder. Import after `settings.quiet_libraries()`.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ DECLINED = ("exhausted", "failed")
 
 
 def threads(count: int) -> TaskRunner[PrefectFuture[Any]]:
-    """A task runner of so many threads, in the type that Prefect's own decorator asks for."""
+    """A task runner of `count` threads, in the type that Prefect's decorator expects."""
     return cast("TaskRunner[PrefectFuture[Any]]", ThreadPoolTaskRunner(max_workers=count))
 
 
 @dataclass
 class Board:
-    """Where tasks leave endings, where they are shown, and the fault that ends the batch; keys are job names."""
+    """Endings that tasks leave, the runs that show their steps, and the fault that ends the batch, by job name."""
 
     jobs: dict[str, Job]
     crew: Crew
@@ -46,17 +46,17 @@ class Board:
     fatal: SgcadError | None = None
 
     steps: int = 0
-    """How many task runs of steps were shown of the cases taken; tracking is one of them."""
+    """Number of task runs of steps shown for the cases taken, tracking included."""
 
     def take(self, job: str) -> tuple[Ending, Graph]:
-        """What a task left of a job; handed out once, since a long batch would keep 80 kB of memory a case."""
+        """The ending of a job; handed out once, since a long batch would keep 80 kB of memory per case."""
         ending, graph = self.endings.pop(job), self.graphs.pop(job)
         self.steps += 0 if ending.reused else graph.every + sum(map(graph.shows, ending.steps))
         return ending, graph
 
 
 def plain(name: str) -> str:
-    """A run name is a format string to Prefect."""
+    """A name without braces, which Prefect would take for a format string."""
     return name.replace("{", "(").replace("}", ")")
 
 
@@ -82,7 +82,7 @@ def case_task(board: Board) -> Any:
 
 
 def _graph(every: bool) -> Graph:
-    """Of the task run that this is called in."""
+    """The step runs of the current task run."""
     context = TaskRunContext.get()
     if context is None:
         raise RuntimeError("a case is finished in a task run of Prefect's")
@@ -95,7 +95,7 @@ def _state(ending: Ending) -> State[Any]:
         return Completed(name="Cached", message=f"done before: {status}")
     if status in DECLINED:
         return Failed(name=status.capitalize(), message=reason)
-    if status == "refused":  # a result, and no success: Prefect shows it grey, not green
+    if status == "refused":  # a result, not a success: Prefect shows it gray
         return Cancelled(name="Refused", message=reason)
     account = counts_of(ending.result)
     if account and account["verdict"] == "lacking":
@@ -105,6 +105,6 @@ def _state(ending: Ending) -> State[Any]:
 
 
 def hush_prefect() -> None:
-    """Keep Prefect's own lines from tearing the progress bar; every end is told by the command itself."""
+    """Silence Prefect's own log lines, which break the progress bar; the command reports every ending."""
     for name in ("prefect", "prefect.task_runs", "prefect.flow_runs", "EventsWorker", "APILogWorker"):
         logging.getLogger(name).setLevel(logging.CRITICAL)

@@ -1,6 +1,6 @@
-"""What a person sees while a batch runs: a bar that moves with every attempt, or lines where there is no terminal.
+"""Progress of a batch: a bar that moves with every attempt, or lines without a terminal.
 
-Everything goes to stderr; standard output is for the answer.
+Everything goes to stderr; stdout is for the answer.
 """
 
 from __future__ import annotations
@@ -21,16 +21,15 @@ from flows.terminal import escape
 from sgcad_core.result import counts_of
 
 LINES_AT_ONCE = 50
-"""Batches up to this size tell every case in a line; larger ones one line in LINE_EVERY_S."""
+"""Batches up to this size print a line per case; larger ones a line every LINE_EVERY_S."""
 LINE_EVERY_S = 10.0
 SHARE = {"road": 0.1, "scenario": 0.55}
-"""How far a case is, as a share of it, when its first attempt of a stage begins; each further one goes a third of
-what is left of that stage."""
+"""Progress of a case when its first attempt of a stage begins; each further attempt adds a third of the rest."""
 
 
 @dataclass
 class Watch:
-    """Told of attempts and endings, from any thread; calls what shows them."""
+    """Counts attempts and endings from any thread, and moves the bar or prints lines."""
 
     tally: Tally
     total: int
@@ -85,7 +84,7 @@ class Watch:
 
 
 def _lacking(ending: Ending) -> str:
-    """How much of what is told lacks, where anything does."""
+    """The number of things told that lack, in words; "" if none lacks."""
     account = counts_of(ending.result)
     return f", {account['lacking']} of {account['told']} told lacking" if account and account["lacking"] else ""
 

@@ -1,6 +1,6 @@
-"""From a checked batch to its end: what is done already, the workers, the server, the flow, in this order.
+"""A checked batch run to its end: finished jobs, workers, server, flow, in this order.
 
-Knows when to import Prefect, and that a batch with nothing left to do needs none.
+Prefect is imported only if a job is left to run.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from sgcad_core import settings
 
 @dataclass(frozen=True)
 class Cost:
-    """What a batch cost beside its cases: processor seconds of this process (planning, Prefect's client, tracking; a
-    model too where one runs here) and of a Prefect server of our own (None: it was the user's)."""
+    """Cost of a batch beside its cases: processor seconds of this process (planning, Prefect's client, tracking, and a
+    model if one runs here) and of the command's own Prefect server (None: the user's server)."""
 
     done: int
-    """Cases that were done, without those found finished."""
+    """Cases run now, without those found finished."""
     elapsed_s: float
     own_s: float = 0.0
     server_s: float | None = None
@@ -35,7 +35,7 @@ def evaluate(
 ) -> Cost:
     """Run a batch, or some of its jobs. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
 
-    Finished cases stay, whatever happens.
+    Finished cases stay on disk in any event.
     """
     settings.quiet_libraries()
     started, spent = time.perf_counter(), time.process_time()
@@ -51,9 +51,9 @@ def evaluate(
 
 
 def _run(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> float | None:
-    """Do what is left to do; processor seconds of the server.
+    """Run the jobs that are left; processor seconds of the server.
 
-    A server of our own that is lost gets one successor, since cases do not need it to be done: it only shows them.
+    A lost server of the command is replaced once: cases do not need it, it only shows them.
     """
     told: set[str] = set()
 
@@ -65,7 +65,7 @@ def _run(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> 
     try:
         return _under_a_server(batch, plan, crew, tell)
     except ServerLost as lost:
-        logging.getLogger(__name__).warning("%s; now another is started", lost.how)
+        logging.getLogger(__name__).warning("%s; another one is started", lost.how)
     return _under_a_server(batch, plan, Crew(batch, crew.on_turn, frozenset(told)), tell)
 
 
@@ -98,7 +98,7 @@ def _processor_s(server: Server) -> float | None:
 
 
 def _all_done(plan: Sequence[Job], crew: Crew) -> list[tuple[Job, Ending]] | None:
-    """Endings of a batch whose cases are all finished and tracked; None if there is anything to do."""
+    """Endings of a batch whose cases are all finished and tracked; None if a job is left."""
     done = []
     for job in plan:
         ending = crew.reusable(job)

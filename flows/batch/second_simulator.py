@@ -1,4 +1,4 @@
-"""What a second simulator made of a batch: a table of how many scenarios loaded, moved alike and crashed as declared.
+"""A second simulator's verdicts on a batch: how many scenarios loaded, moved alike and crashed as declared.
 
 Reads the `judge` part of results. Knows no simulator.
 """
@@ -20,7 +20,7 @@ MAX_TOLD = 10
 
 
 def show(console: Console, results: Mapping[str, Sequence[Mapping[str, Any]]]) -> None:
-    """Print the table of all configs and the first few disagreements; nothing where nobody was judged."""
+    """Print the table of all configs and the first disagreements; nothing where no case was judged."""
     judged = {name: [r for r in those if "judge" in r] for name, those in results.items()}
     if not any(judged.values()):
         return

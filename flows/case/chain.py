@@ -48,7 +48,7 @@ T = TypeVar("T")
 
 
 def ask_of(config: Config) -> Ask:
-    """How writers of this config speak to its model; a later attempt draws with another seed."""
+    """The function by which writers ask the config's model; each further attempt uses another seed."""
     backbone, decoder = config.backbone, config.decoder
     if backbone is None or decoder is None:  # config.build refuses this pairing
         lack = "backbone" if backbone is None else "decoder"
@@ -62,7 +62,7 @@ def ask_of(config: Config) -> Ask:
 
 @dataclass
 class CaseRun:
-    """A case on its way: what is known so far, whatever comes next."""
+    """A case while it runs: everything known so far."""
 
     config: Config
     case: Case
@@ -76,22 +76,22 @@ class CaseRun:
     seconds: dict[str, float] = field(default_factory=dict)
     calls: list[Call] = field(default_factory=list)
     fresh: list[Attempt] = field(default_factory=list)
-    """Attempts made here and now; the others were taken from the shelf, and so were the steps in `shared`."""
+    """Attempts made by this run; the others were taken from the shelf, as were the steps in `shared`."""
     shared: list[str] = field(default_factory=list)
     failure: str = ""
     trace: str = ""
     edits: tuple[Edit, ...] | None = None
     """A person's facts; None: those beside the report."""
     kept: Mapping[str, person_facts.Kept] = field(default_factory=dict)
-    """By stage, the answer that a model gave to this case before: it is not asked again."""
+    """By stage, a model's former answer to this case; the model is not asked again."""
     as_read: dict[str, Any] | None = None
-    """The specs before anybody changed a fact, where they are known."""
+    """The specs before the first edit, where they are known."""
     steps: Steps = field(default_factory=Steps)
     result: dict[str, Any] | None = None
-    """The content of result.json, once somebody who looks at it first has put it together."""
+    """The content of result.json, if it was put together before the files are written."""
 
     def go(self) -> None:
-        """Run the stages; how they ended stands in the fields. Raises MissingTool and ConfigError only."""
+        """Run the stages; their results are in the fields. Raises MissingTool and ConfigError only."""
         try:
             self._stages()
         except (MissingTool, ConfigError):
@@ -150,7 +150,7 @@ class CaseRun:
             self.metrics["judge"] = self.judgement.summary()
 
     def _stage(self, refinement: Refinement, *content: Any) -> RoadNetwork | Scenario | None:
-        """Refine, as far as the shelf does not know how that ends; the time is that of the attempts themselves."""
+        """Run a stage's refinement, reusing kept turns; its time is that of the attempts themselves."""
         name = refinement.stage
         with self.clock(name, shown=False):
             turns, known = stage_cache.refined(self.sharing, refinement, self.case.id, *content)
@@ -216,7 +216,7 @@ class CaseRun:
 
     @contextmanager
     def clock(self, step: str, shown: bool = True) -> Iterator[list[str]]:
-        """Add the time of what is done within to a step's, which is told unless it is `shown` otherwise."""
+        """Add the time of the block to a step's; the step is logged if `shown`."""
         started = time.perf_counter()
         try:
             with ExitStack() as told:
@@ -225,7 +225,7 @@ class CaseRun:
             self.seconds[step] = self.seconds.get(step, 0.0) + time.perf_counter() - started
 
     def record(self) -> CaseRecord:
-        """Everything known, for result.json and the player."""
+        """Everything known about the case, for result.json and the player."""
         notes = self.report.notes if self.report else ()
         reading = self.report.reading if self.report else None
         about = self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds
@@ -237,7 +237,7 @@ class CaseRun:
         return tuple(a for outcome in self.outcomes.values() for a in outcome.attempts)
 
     def read_alone(self) -> dict[str, Any] | None:
-        """The specs that the case would have if nobody had said anything; None where nobody did."""
+        """The specs that the case would have without its edits; None where there are no edits."""
         if self.as_read is None and self.report and self.report.edits:
             alone = CaseRun(self.config, self.case, run_at_once, edits=(), kept=person_facts.kept_in(self.outcomes))
             with suppress(SgcadError):
@@ -246,6 +246,6 @@ class CaseRun:
         return self.as_read
 
     def fail(self, fault: Exception) -> None:
-        """Make this a failed case whose reason is a fault that nobody foresaw."""
+        """Make this a failed case whose reason is an unexpected fault."""
         self.failure = f"unexpected {type(fault).__name__}: {fault} (see error.txt)"
         self.trace = "".join(traceback.format_exception(fault))

@@ -29,9 +29,9 @@ NO_MODEL = "No model was asked. Read by rules, each with the sentence [begin-end
 
 @dataclass(frozen=True)
 class Ending:
-    """What a caller learns of a finished case; the rest is on disk. `reused`: nothing had to be done.
+    """A finished case as its caller sees it; the rest is on disk. `reused`: it was finished before.
 
-    Attempts and calls are those made here and now, without the ones taken from a shelf; steps are all.
+    Attempts and calls are those made now, without those taken from a shelf; steps are all.
     """
 
     result: dict[str, Any]
@@ -51,7 +51,7 @@ def run_case(
     sharing: Sharing | None = None,
     tell: OnStep = unheard,
 ) -> Ending:
-    """Run one case and leave its folder. Raises MissingTool, ConfigError (a folder that cannot be written)."""
+    """Run one case and write its folder. Raises MissingTool, ConfigError (a folder that cannot be written)."""
     run = CaseRun(config, case, on_attempt, sharing, steps=Steps(tell))
     run.go()
     result = leave_run(run, case_folder.CaseFolder(out, config.name, case.id), digest)
@@ -59,13 +59,13 @@ def run_case(
 
 
 def leave_failed(config: Config, case: Case, out: Path, digest: str, reason: str) -> Ending:
-    """The folder of a case whose process died, with the reason. The report is not read again: it may be the cause."""
+    """Write the folder of a case whose process died, with the reason; the report is not read, it may be the cause."""
     run = CaseRun(config, case, run_at_once, failure=reason)
     return Ending(leave_run(run, case_folder.CaseFolder(out, config.name, case.id), digest))
 
 
 def leave_run(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict[str, Any]:
-    """Write the folder of a case that has gone; its result. Raises ConfigError: it cannot be written."""
+    """Write the folder of a case that has run; its result. Raises ConfigError where it cannot be written."""
     try:
         return _write(run, folder, digest)
     except OSError as fault:
@@ -80,7 +80,7 @@ def leave_run(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict
 
 
 def _write(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict[str, Any]:
-    """Write the folder. A failed case gets no digest that matches: running again tries it again."""
+    """Write the folder. A failed case gets an empty digest, so that the next run repeats it."""
     with folder.writing() as partial:
         result = write_files(run, partial)
         mark = digest if result["status"] != "failed" else ""
@@ -93,7 +93,7 @@ def _write(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict[st
 
 # ------------------------------------------------------------------ the files
 def write_files(run: CaseRun, folder: Path) -> dict[str, Any]:
-    """Write the case's files into a folder, result.json last; the result."""
+    """Write the case's files into a folder, result.json last; returns the result."""
     record = run.record()
     case_folder.write_artifacts(folder, run.report, with_reading(run.attempts(), record), record)
     if run.metrics is not None:
@@ -122,7 +122,7 @@ def _impact(record: CaseRecord) -> dict[str, Any] | None:
 
 
 def _hand_over(run: CaseRun, folder: Path, record: CaseRecord) -> None:
-    """What the contact was like, and what the config's drivers made of it (`drive`), into the metrics."""
+    """Add the figures of the contact and the config's drives (`drive`) to the metrics."""
     drawn = record.network is not None and record.network.net_xml
     if run.metrics is None or not (record.scenario and drawn and run.execution):
         return
@@ -143,7 +143,7 @@ def _draw(run: CaseRun, folder: Path, record: CaseRecord, result: dict[str, Any]
 
 
 def drives_in(folder: Path) -> dict[str, Sequence[Trajectory]]:
-    """What drivers made of the case (flows/drive), by driver and the one who was driven."""
+    """Trajectories of the case's drives (flows/drive) by driver and ego."""
     files = sorted((folder / "drive").glob("*/*/trajectories.csv"))
     return {
         f"{file.parent.parent.name} drives {file.parent.name}": case_folder.read_trajectories(file) for file in files
@@ -152,7 +152,7 @@ def drives_in(folder: Path) -> dict[str, Sequence[Trajectory]]:
 
 # ------------------------------------------------------------------ attempts that asked no model
 def with_reading(attempts: Iterable[Attempt], record: CaseRecord) -> tuple[Attempt, ...]:
-    """The attempts; those that asked no model show the facts of their stage as prompt, what they wrote as answer."""
+    """The attempts; those without a model get the facts of their stage as prompt and their specs as answer."""
     facts = facts_of(record)
     return tuple(a if a.prompt or a.answer or a.generation else _told(a, facts, record) for a in attempts)
 
@@ -171,7 +171,7 @@ def _line(fact: Fact) -> str:
 
 
 def _written(attempt: Attempt, record: CaseRecord) -> str:
-    """The specs that were written, as JSON, and what was remarked; in words where nothing was written."""
+    """The written specs as JSON with the writer's notes; in words where nothing was written."""
     outcome = record.outcomes[attempt.stage]
     artifact = outcome.artifact if outcome.kept in (0, attempt.number) else None
     parts = list(_specs(artifact))

@@ -1,7 +1,7 @@
-"""A case's folder on disk, as docs/configs.md promises it: written whole or not at all.
+"""A case's folder on disk (docs/configs.md): written whole or not at all.
 
-Everything goes into a hidden folder beside the target, result.json and the digest last, then one rename:
-a kill, a full disk or Ctrl-C leaves no half case that looks finished.
+Files are written into a hidden folder beside the target, result.json and the digest last, which is then renamed: a
+kill, a full disk or Ctrl-C leaves no half-written case that looks finished.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ DIGEST = ".digest"
 TRACKED = ".tracked"
 PARTIAL = ".partial-"
 REPLACE_TRIES = 20
-"""How often two processes that finish the same case may get in each other's way."""
+"""Maximum tries to replace a folder that other processes replace at the same time."""
 MIN_FREE_MB = 50
-"""Below this nothing is started; a case takes 1 to 3 MB."""
+"""Free space below which nothing is started; a case takes 1 to 3 MB."""
 
 
 @dataclass(frozen=True)
 class CaseFolder:
-    """Where one case of one config lies."""
+    """The folder of one case of one config."""
 
     out: Path
     config: str
@@ -51,7 +51,7 @@ class CaseFolder:
         return self.out / self.config / self.case
 
     def finished(self, digest: str) -> dict[str, Any] | None:
-        """result.json if the case is done with this very digest, else None."""
+        """result.json if the case is finished with this digest, else None."""
         try:
             if (self.path / DIGEST).read_text(encoding="utf-8") != digest:
                 return None
@@ -60,7 +60,7 @@ class CaseFolder:
         return self.result()
 
     def result(self) -> dict[str, Any] | None:
-        """result.json, whatever it was made of; None if there is none that can be read."""
+        """result.json of any digest; None if it is missing or cannot be read."""
         try:
             result = json.loads((self.path / "result.json").read_text(encoding="utf-8"))
         except (OSError, ValueError):
@@ -69,7 +69,7 @@ class CaseFolder:
 
     @contextmanager
     def writing(self) -> Iterator[Path]:
-        """A fresh folder that becomes the case's folder when the block ends well, and vanishes otherwise."""
+        """A new folder that becomes the case's folder if the block succeeds, and is removed otherwise."""
         self.path.parent.mkdir(parents=True, exist_ok=True)
         partial = Path(tempfile.mkdtemp(prefix=f"{PARTIAL}{os.getpid()}-", dir=self.path.parent))
         try:
@@ -80,7 +80,7 @@ class CaseFolder:
             shutil.rmtree(partial, ignore_errors=True)
 
     def _replace(self, partial: Path) -> None:
-        """Put the new folder in the old one's place, even while another process does the same (the last one stays)."""
+        """Replace the old folder by the new one, also while another process does the same (the last one stays)."""
         old = Path(tempfile.mkdtemp(prefix=f"{PARTIAL}{os.getpid()}-", dir=self.path.parent))
         try:
             for turn in range(REPLACE_TRIES):
@@ -106,7 +106,7 @@ class CaseFolder:
 
 @contextmanager
 def _unless_there() -> Iterator[None]:
-    """Pass over that a folder stands in the way."""
+    """Ignore the error of a target folder that exists."""
     try:
         yield
     except OSError as fault:
@@ -128,7 +128,7 @@ def check_writable(out: Path) -> None:
 
 
 def clear_partial(folder: Path) -> int:
-    """Remove what killed processes left behind; how many folders it was."""
+    """Remove folders that killed processes left; their number."""
     left = [p for p in folder.glob(f"{PARTIAL}*-*") if p.is_dir() and not _alive(p.name.split("-")[1])]
     for partial in left:
         shutil.rmtree(partial, ignore_errors=True)
@@ -147,7 +147,7 @@ def _alive(pid: str) -> bool:
 
 # ------------------------------------------------------------------ files
 def write_artifacts(folder: Path, report: CrashReport | None, attempts: Iterable[Attempt], record: CaseRecord) -> None:
-    """Report, attempts, road network, scenario and trajectories, as far as there are any."""
+    """Write report, attempts, road network, scenario and trajectories, as far as they exist."""
     write_report(folder, report)
     write_attempts(folder, attempts)
     if record.network:
@@ -211,7 +211,7 @@ def write_scenario(folder: Path, scenario: Scenario) -> None:
 def write_trajectories(file: Path, trajectories: Sequence[Trajectory]) -> None:
     """trajectories.csv: t_s, actor, x_m, y_m, heading_rad, speed_mps; all actors of an instant together.
 
-    Where somebody rolls over there is a column roll_rad behind them.
+    Where an actor rolls over, a column roll_rad follows.
     """
     rolls = any(track.roll_rad is not None for track in trajectories)
     rows = []
@@ -226,7 +226,7 @@ def write_trajectories(file: Path, trajectories: Sequence[Trajectory]) -> None:
 
 
 def read_trajectories(file: Path) -> tuple[Trajectory, ...]:
-    """What `write_trajectories` wrote, actors in the order of the file. Raises BadInput for anything else."""
+    """Read a trajectories.csv, actors in the order of the file. Raises BadInput for any other content."""
     needed = ("t_s", "x_m", "y_m", "heading_rad", "speed_mps")
     rows: dict[str, list[list[float]]] = {}
     with file.open(encoding="utf-8", newline="") as lines:
@@ -237,8 +237,8 @@ def read_trajectories(file: Path) -> tuple[Trajectory, ...]:
                 rows.setdefault(row["actor"], []).append([_finite(row[name]) for name in names])
         except (KeyError, TypeError, ValueError, csv.Error) as fault:
             raise BadInput(
-                f"{file}: no trajectories of ours ({str(fault)[:100]}): every row needs actor and, as finite numbers, "
-                f"{', '.join(needed)}; run the case again"
+                f"{file}: cannot be read as trajectories ({str(fault)[:100]}): every row needs actor "
+                f"and, as finite numbers, {', '.join(needed)}; run the case again"
             ) from fault
     return tuple(
         Trajectory(actor=actor, **dict(zip(names, np.array(values).T, strict=True))) for actor, values in rows.items()
@@ -247,7 +247,7 @@ def read_trajectories(file: Path) -> tuple[Trajectory, ...]:
 
 def _finite(text: str) -> float:
     if not math.isfinite(value := float(text)):
-        raise ValueError(f"{text!r} is no finite number")
+        raise ValueError(f"{text!r} is not a finite number")
     return value
 
 

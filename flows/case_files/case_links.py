@@ -1,7 +1,7 @@
-"""Where a case is to be seen in Prefect, in MLflow and in the desk: kept in its folder, as links.json.
+"""Links to a case's pages in Prefect, MLflow and the desk: kept in its folder as links.json.
 
 {"prefect": flow run, "prefect_case": task run, "mlflow": run}. An address that begins with "/" is that of a page whose
-server was not known or does not last; whoever knows where it is served puts that before it. Knows files and processes.
+server was not known or ends with the command; `resolved` puts the server's address before it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from flows.health import Running
 
 FILE = "links.json"
 DESK = ".desk"
-"""The folder in a results folder where a desk that is open over it is noted."""
+"""Folder in a results folder that notes the desk that serves it."""
 NAMES = ("prefect", "prefect_case", "mlflow")
 
 
@@ -33,7 +33,7 @@ class Served:
     mlflow: str = ""
     desk: str = ""
     root: Path = Path()
-    """The results folder that the desk is open over."""
+    """The results folder that the desk serves."""
 
     def case_page(self, folder: Path) -> str:
         """A case's page in the desk."""
@@ -43,7 +43,7 @@ class Served:
 
 
 def served(out: Path) -> Served:
-    """What `make up` and `sgcad desk` serve over a results folder or one above it."""
+    """The pages that `make up` and `sgcad desk` serve for a results folder or one above it."""
     there = _running(health.services_folder(out))
     desk = next(((d, folder) for folder in (out, *out.parents[:2]) if (d := _running(folder / DESK).get("desk"))), None)
     return Served(
@@ -55,13 +55,13 @@ def served(out: Path) -> Served:
 def _running(folder: Path) -> dict[str, str]:
     try:
         return {name: address(service.address) for name, service in health.noted(folder).items() if service.alive()}
-    except (OSError, ValueError, TypeError, KeyError):  # half-written, or somebody else's
+    except (OSError, ValueError, TypeError, KeyError):  # half-written, or of another program
         return {}
 
 
 @contextmanager
 def noted_desk(root: Path, where: str) -> Iterator[None]:
-    """Note that a desk is open over a results folder, as long as the block lasts."""
+    """Note that a desk serves a results folder while the block lasts."""
     folder, me = root / DESK, os.getpid()
     with suppress(OSError):  # a folder that can only be read has a desk all the same
         folder.mkdir(exist_ok=True)
@@ -89,7 +89,7 @@ def address(given: str) -> str:
 
 # ------------------------------------------------------------------ links.json
 def keep(folder: Path, found: Mapping[str, str]) -> None:
-    """Add links to a case's folder. One that was removed meanwhile has none."""
+    """Add links to a case's folder, if it still exists."""
     with suppress(OSError):
         partial = folder / f".{FILE}.{os.getpid()}"
         partial.write_text(json.dumps({**kept(folder), **found}, indent=1) + "\n", encoding="utf-8")
@@ -97,7 +97,7 @@ def keep(folder: Path, found: Mapping[str, str]) -> None:
 
 
 def kept(folder: Path) -> dict[str, str]:
-    """The links of a case's folder; only addresses, only those that we know."""
+    """The links of a case's folder: known names with valid addresses only."""
     try:
         found = json.loads((folder / FILE).read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -110,7 +110,7 @@ def _is_link(value: object) -> bool:
 
 
 def resolved(link: str, where: str) -> str:
-    """A kept link as an address: its page behind `where`, if that is known; "" if it is nowhere."""
+    """A kept link as an address on the server `where`; "" if the server is not known."""
     if link.startswith("/"):
         return f"{where}{link}" if where else ""
     return where + link[len(address_of(link)) :] if where else link

@@ -1,6 +1,6 @@
-"""Which reports a command means, what their folders are called, and when one counts as done already.
+"""The reports that a command names, the names of their folders, and the digest by which a case counts as finished.
 
-Knows the file system and the configuration; reads no report's content but for the digest.
+Reads a report's content only for the digest.
 """
 
 from __future__ import annotations
@@ -50,12 +50,12 @@ def cases_of(sources: Sequence[Path]) -> tuple[Case, ...]:
     twice = [name for name, n in Counter(c.id.casefold() for c in cases).items() if n > 1]
     if twice:
         same = [str(c.source) for c in cases if c.id.casefold() == twice[0]]
-        raise ConfigError(f"{' and '.join(same)} would share the folder {twice[0]!r}: rename one or use --out")
+        raise ConfigError(f"{' and '.join(same)} would share the folder {twice[0]!r}: rename one or use another --out")
     return cases
 
 
 def _is_there(source: Path) -> bool:
-    """Whether it is there, as far as anybody lets us look; what cannot be read costs its own case later."""
+    """Whether it exists; a path that cannot be looked at counts as existing and fails as a case of its own."""
     try:
         return source.exists()
     except PermissionError:
@@ -63,7 +63,7 @@ def _is_there(source: Path) -> bool:
 
 
 def _names(sources: Sequence[Path]) -> list[str]:
-    """Folder names: a file's without its suffix, unless another report of the same batch is called so too."""
+    """Folder names: a file's name without its suffix, unless two reports of the batch would share it."""
     plain = [_name(source, whole=False) for source in sources]
     count = Counter(name.casefold() for name in plain)
     return [_name(source, whole=count[name.casefold()] > 1) for source, name in zip(sources, plain, strict=True)]
@@ -76,7 +76,7 @@ def _name(source: Path, *, whole: bool) -> str:
 
 
 def cases_in(folders: Iterable[Path]) -> tuple[Case, ...]:
-    """Every case in the folders, in the order of their names. Raises ConfigError where there is none."""
+    """All cases in the folders, ordered by name. Raises ConfigError where a folder has none."""
     sources = [s for folder in folders for s in _inside(folder)]
     return cases_of(sources)
 
@@ -92,12 +92,12 @@ def _inside(folder: Path) -> list[Path]:
         return [folder]
     found = [e for e in entries if e.is_dir()] or [e for e in entries if e.suffix.lower() in SUFFIXES]
     if not found:
-        raise ConfigError(f"{folder}: no case in it; put each report into a folder of its own, as report.txt")
+        raise ConfigError(f"{folder}: it contains no case; put each report into a folder of its own, as report.txt")
     return found
 
 
 def safe_id(name: str) -> str:
-    """A name as a plain folder name: unchanged if it is one; never a path, hidden, a control character or too long."""
+    """A name as a safe folder name: no path, not hidden, without control characters, not too long."""
     safe = re.sub(r'[\x00-\x1f\x7f/\\:*?"<>|]', "_", name.encode("utf-8", "replace").decode())
     safe = re.sub(r"^\.+", "_", safe).rstrip(" .") or "case"
     if len(safe.encode()) > MAX_NAME_BYTES:
@@ -137,7 +137,7 @@ def config_digest(config: Config) -> str:
 
 
 def opinion_digests(config: Config) -> list[str]:
-    """Of the weights of the learned second reader, where a config wants it."""
+    """Digest of the learned second reader's weights, if a config uses it."""
     return [_files_digest([WEIGHTS], WEIGHTS.parent)] if config.second_opinion == LEARNED else []
 
 
@@ -147,12 +147,12 @@ def _plugins(config: Config) -> Iterator[Plugin]:
 
 
 def code_digest(asks_model: bool) -> str:
-    """Of the prompts and, where no model writes, of the code; see `digest_of` for why."""
+    """Digest of the prompts and, where no model writes, of the code; `digest_of` gives the reason."""
     return _prompts_digest() if asks_model else _code_digest()
 
 
 def named_digests(value: object) -> Iterator[str]:
-    """Of files and folders that a configuration names: a script of answers, a model's weights."""
+    """Digests of files and folders that a configuration names, such as a script of answers or a model's weights."""
     if isinstance(value, dict | list):
         for inner in value.values() if isinstance(value, dict) else value:
             yield from named_digests(inner)
@@ -165,7 +165,7 @@ def named_digests(value: object) -> Iterator[str]:
 
 
 def _folder_digest(folder: Path) -> str:
-    """By content up to 300 MB; larger ones (weights of hours to load) by their files' names and sizes."""
+    """Digest of a folder: by content up to 300 MB, larger ones by names and sizes of their files."""
     files = sorted(f for f in folder.rglob("*") if f.is_file())
     sizes = [(str(f.relative_to(folder)), f.stat().st_size) for f in files]
     small = sum(size for _, size in sizes) <= MAX_READ_BYTES
@@ -173,9 +173,9 @@ def _folder_digest(folder: Path) -> str:
 
 
 def identity(plugin: Plugin) -> tuple[str, ...]:
-    """What makes a plugin's results its own beside its fields: version, stamp, and a stranger's code."""
-    stranger = code_of(type(plugin))
-    return (type(plugin).version, plugin.stamp, *([stranger] if stranger else []))
+    """What identifies a plugin's results beside its fields: version, stamp, and the code of a foreign plugin."""
+    foreign_code = code_of(type(plugin))
+    return (type(plugin).version, plugin.stamp, *([foreign_code] if foreign_code else []))
 
 
 def qualified(plugin: Plugin) -> str:
@@ -199,7 +199,7 @@ def dataset_digest(cases: Iterable[Case]) -> str:
 
 
 def _file_and_facts(source: Path) -> list[Path]:
-    """A report that is a file, and what people said of it."""
+    """A report that is a file, and its facts.yaml."""
     facts = facts_file(source)
     return [source, facts] if facts.is_file() else [source]
 
@@ -221,7 +221,7 @@ def _sources(package: Path) -> list[Path]:
 
 
 def _files_digest(files: Iterable[Path], root: Path, most: float = math.inf) -> str:
-    """Of names and contents; of a file over `most` bytes its size."""
+    """Digest of names and contents; of a file above `most` bytes by its size."""
     found = hashlib.sha256()
     for file in files:
         found.update(f"\n{file.relative_to(root)}\n".encode("utf-8", "surrogateescape"))

@@ -1,8 +1,8 @@
-"""Records as JSON and back: what stages share and processes hand on, without code in it.
+"""Records as JSON and back, for stages shared between configs and processes; the JSON holds no code.
 
-A packed value names its records by class, out of a closed list, and every record is validated when it is read: whoever
-writes into a shared folder can spoil a result there, never run anything. Arrays of numbers and bytes are base64.
-Knows records, specs and the turns of refinement; no file and no plugin.
+A packed value names its records by class, out of a closed list, and every record is validated when it is read: a
+file written into a shared folder by others can spoil a result there, but never run code. Arrays of numbers and bytes
+are base64. Knows records, specs and the turns of refinement; no file and no plugin.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ MAX_BYTES = 256_000_000
 
 
 class Unpackable(ValueError):
-    """Bytes that are no packed value, or one of other records than ours."""
+    """Bytes that are no packed value of these records."""
 
 
 def pack(value: Any) -> bytes:

@@ -1,13 +1,10 @@
-"""Stages that several configs share: computed once, kept in a folder, taken from there by everyone else.
+"""Stages that several configs share: computed once, kept in a folder, reused by the others.
 
 A stage's key is a fingerprint of all that it depends on: the evidence as the reader gave it, the passages, the
 network for a scenario, and what the config contributes (`Keys`). So two arms that differ in the scenario
-writer share their roads, and ten that differ in the number of attempts share every attempt. The folder is a
-cache and nothing more: whatever is missing, damaged or deleted is computed again and comes out the same. It may
-lie where others can write: what is read from it is records in JSON, validated, and never code
-(`flows.case_files.record_json`).
-
-Knows the file system, configs and refinement; nothing of studies.
+writer share their roads, and ten that differ in the number of attempts share every attempt. The folder is only
+a cache: a missing, damaged or deleted file is computed again with the same result. Others may be able to write into
+it: its files are read as validated JSON records, never as code (`flows.case_files.record_json`).
 """
 
 from __future__ import annotations
@@ -41,15 +38,15 @@ from sgcad_core.records import facts, specs
 from sgcad_core.records import second_reader as opinion
 
 _RECORDS = (evidence, facts, findings, opinion, records, specs, refine, schema_holds, record_json)
-"""Where that is defined which a kept step holds, and what it was asked."""
+"""Modules that define the content of kept steps; other code in them is another cache."""
 T = TypeVar("T")
 WAIT_S, LOOK_S = 3600.0, 0.05
-"""How long one waits for another who computes the same, and how often one looks; then one does it oneself."""
+"""Maximum wait for another process that computes the same value, and the interval of looking."""
 
 
 @dataclass(frozen=True)
 class Keys:
-    """What a config contributes to the keys of its steps."""
+    """A config's part in the keys of its steps."""
 
     read: str
     opinion: str
@@ -70,7 +67,7 @@ def keys_of(config: Config) -> Keys:
 
 
 def _opinion(config: Config) -> dict[str, Any]:
-    """What a second opinion depends on, beside the report; a model's weights stand in the prompts' digest."""
+    """The inputs of a second opinion beside the report; a model's weights are part of the prompts' digest."""
     if not config.second_opinion:
         return {}
     if config.second_opinion == opinion.LEARNED:
@@ -80,7 +77,7 @@ def _opinion(config: Config) -> dict[str, Any]:
 
 
 def _stage(config: Config, writer: Any, stage: str) -> str:
-    """The number of attempts is no part: fewer attempts are the first of many (see `Shelf.turns`)."""
+    """Key of a stage. The number of attempts is no part of it: fewer attempts are the first of many."""
     plugins: list[Plugin] = [writer, *config.validators_of(stage)]
     asked = [p for p in (config.backbone, config.decoder) if p is not None] if writer.asks_model else []
     about = _about([*plugins, *asked], writer.asks_model)
@@ -143,7 +140,7 @@ class Shelf:
     folder: Path
 
     def get(self, key: str) -> Any | None:
-        """What was put under a key; None if nothing, or nothing that can be read."""
+        """The value of a key; None if it is missing or cannot be read."""
         try:
             check, _, packed = self._file(key).read_bytes().partition(b"\n")
             if hashlib.sha256(packed).hexdigest().encode() != check:
@@ -153,7 +150,7 @@ class Shelf:
             return None
 
     def put(self, key: str, value: Any) -> None:
-        """Keep a value. A full disk, a vanished folder or a stranger's record costs the sharing, not the case."""
+        """Keep a value. A full disk, a removed folder or a foreign record costs the sharing, not the case."""
         file = self._file(key)
         try:
             packed = pack(value)
@@ -167,7 +164,7 @@ class Shelf:
 
     @contextmanager
     def alone(self, key: str) -> Iterator[None]:
-        """Keep others from computing the same meanwhile. A lock ends with its process, and patience ends too."""
+        """Hold a key's lock while the block lasts; it ends with its process, and waiting for it has a limit."""
         lock = self._file(key).with_suffix(".lock")
         try:
             lock.parent.mkdir(parents=True, exist_ok=True)
@@ -178,12 +175,12 @@ class Shelf:
         try:
             _wait_for(held)
             yield
-            lock.unlink(missing_ok=True)  # who waits for it looks at the shelf first
+            lock.unlink(missing_ok=True)  # a waiting process looks at the shelf first
         finally:
             os.close(held)
 
     def timed(self, key: str, compute: Callable[[], tuple[T, float]]) -> tuple[T, float, bool]:
-        """A value, the seconds that it took, and whether it was there already."""
+        """A value, the seconds of its computation, and whether it was kept before."""
         if (found := self._timed(key)) is not None:
             return (*found, True)
         with self.alone(key):
@@ -200,9 +197,9 @@ class Shelf:
         return found if isinstance(found[0], CrashReport | Execution) else None
 
     def turns(self, key: str, refinement: Refinement) -> tuple[list[Turn], int]:
-        """A stage's turns, and how many of them were there already.
+        """A stage's turns, and how many of them were kept before.
 
-        Whoever refined longer has refined for the others too; whoever may go on goes on from there.
+        Kept turns are reused up to the config's limit; a config with a higher limit continues from them.
         """
         turns = self._fitting(key, refinement)
         if refinement.ended(turns):
@@ -238,7 +235,7 @@ def _wait_for(lock: int) -> None:
 
 @dataclass(frozen=True)
 class Sharing:
-    """One job's way to the shelf; can be pickled."""
+    """Access of one job to the shelf; can be pickled."""
 
     folder: Path
     keys: Keys
@@ -251,7 +248,7 @@ class Sharing:
         return Shelf(self.folder)
 
     def key(self, step: str, *content: Any) -> str:
-        """A step's key: what the config contributes and what it works on."""
+        """A step's key, from the config's part and the step's inputs."""
         files = self.source if step == "read" else ""
         return hashlib.sha256(f"{step} {getattr(self.keys, step)} {files} {content_of(content)}".encode()).hexdigest()
 
@@ -264,7 +261,7 @@ def refined(sharing: Sharing | None, refinement: Refinement, *content: Any) -> t
 
 
 def timed(sharing: Sharing | None, step: str, compute: Callable[[], T], *content: Any) -> tuple[T, float, bool]:
-    """A step's value, the seconds it took whoever computed it, and whether it was taken from the shelf."""
+    """A step's value, the seconds that its computation took, and whether it was taken from the shelf."""
 
     def work() -> tuple[T, float]:
         started = time.perf_counter()

@@ -132,7 +132,7 @@ class Place:
 
     # ------------------------------------------------------------------ writing
     def create(self, name: str, content: bytes) -> bool:
-        """Make a file that nobody has made; False if it is there."""
+        """Make a file; False if it exists already."""
         target = self.path(name)
         if self.is_local:
             partial = self._partial(content)
@@ -176,7 +176,7 @@ class Place:
 
     # ------------------------------------------------------------------ moving
     def move(self, entry: Entry, target: str) -> None:
-        """Move an entry; what stood at the target gives way. A killed move is finished by whoever looks next."""
+        """Move an entry, replacing the target. A killed move is finished by the next process that lists the folder."""
         if self.is_local:
             goal = Path(self.path(target))
             goal.parent.mkdir(parents=True, exist_ok=True)

@@ -127,7 +127,7 @@ def server_of(app: object) -> uvicorn.Server:
 
 
 def gate_of(asked: Asked) -> Gate:
-    """Who may come in: beyond this machine only who has the token, which is made up where none is given."""
+    """Conditions of access: beyond this machine a token is needed, which is generated where none is given."""
     from flows.desk.guard import LOOPBACK, Gate
 
     local = asked.host in LOOPBACK

@@ -4,7 +4,7 @@
     truth/<case>.json    the mended case as a label, for `sgcad score` and like scorers
     rows.jsonl           a line a mended case for training: narrative, drawing, the layout and the behavior to answer
 
-Only cases with a person's fact are data: nobody has looked at the others. Reads run folders; starts nothing.
+Only cases with a person's fact are exported: the others were not checked. Reads run folders; starts nothing.
 """
 
 from __future__ import annotations
@@ -61,7 +61,9 @@ def export(runs: Path, out: Path) -> list[str]:
     left: list[str] = []
     found = list(mended(runs, left))
     if not found:
-        raise BadInput(f"{runs}: nobody has changed a fact of these cases: nothing to export; see `sgcad revise`")
+        raise BadInput(
+            f"{runs}: no fact of these cases was changed by a person, so nothing to export; see `sgcad revise`"
+        )
     try:
         _write(found, out)
     except OSError as fault:

@@ -1,4 +1,4 @@
-"""Keeps strangers out of the desk: whom a request may be addressed to, who may look, who may change.
+"""Access to the desk: host names that it answers to, its token, and the origin of changes.
 
 - *Host*: a request for another name than the desk's own is answered 421, so that no foreign page can reach the desk
   through a name that it points here (DNS rebinding).
@@ -48,13 +48,13 @@ BODY_LIMIT = 1_000_000
 
 @dataclass(frozen=True)
 class Gate:
-    """Who may come in. `names`: host names that the desk answers to; `token`: "" where none is needed."""
+    """Conditions of access. `names`: host names that the desk answers to; `token`: "" where none is needed."""
 
     names: frozenset[str] = frozenset(LOOPBACK)
     token: str = ""
     any_address: bool = False
     """Whether any IP address is a name of the desk too, as where it listens on all of a machine's: a page elsewhere
-    cannot point an address at somebody."""
+    cannot point an address at another machine."""
     secret: bytes = field(default_factory=lambda: secrets.token_bytes(32), repr=False)
 
     def is_own(self, host: str) -> bool:

@@ -175,7 +175,7 @@ def _warm_up(folder: Path) -> None:
 
 
 def told(fault: SgcadError) -> str:
-    """A fault for the person who made the change."""
+    """A fault in words for the author of the change."""
     if isinstance(fault, SimulationFailed):
         return f"The change could not be carried out, nothing was changed: {fault}"
     return str(fault)

@@ -1,4 +1,4 @@
-"""The stage `drive` of a config: an executed case handed over in memory. Knows records and the config."""
+"""The stage `drive` of a config: drivers drive an executed case in memory."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""The hardest members of a family for a driver: hardest.json and decides.png. Knows families and drives.
+"""The hardest members of a family for a driver: hardest.json and decides.png.
 
-By cross-entropy the search closes in on the one hardest corner; by MAP-Elites it keeps the hardest member of every
-cell of two descriptors, how fast the pair closes and how late the driver began to brake, so that different ways of
-being hard stand beside each other. Both tell rates within the family by importance weights.
+Cross-entropy converges to the one hardest region. MAP-Elites keeps the hardest member of every cell of two descriptors,
+closing speed and time to collision at the start of braking. Both estimate rates within the family by importance
+weights.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ ROUNDS = 5
 CLOSING_MPS = 2.5
 """Width of a cell in closing speed."""
 TTC_S = (0.5, 1.0, 1.5, 2.0, 3.0)
-"""Between cells of the time to collision at which braking began; who never braked has a cell of its own."""
+"""Between cells of the time to collision at which braking began; a drive without braking has a cell of its own."""
 TOLD = 10
 
 
@@ -47,10 +47,10 @@ class Search(NamedTuple):
 
 
 def hardest(family: Family, count: int, seed: int, look: Search, place: Path) -> None:
-    """Search, and write what was found. Raises ConfigError where nobody has the role, SimulationFailed."""
+    """Search, and write the result. Raises ConfigError where no actor has the role, SimulationFailed."""
     wanted = egos(family.basis.script, "", [look.role])
     if not wanted:
-        raise ConfigError(f"{family.folder}: nobody who can be driven is its {look.role}; give --role")
+        raise ConfigError(f"{family.folder}: no actor that can be driven has the role {look.role}; give another --role")
     ego, seen = wanted[0][0], list[Came | None]()
     drives = _driven(family, look, ego, seen)
     dimensions, told = len(family.parameters), {}
@@ -75,7 +75,7 @@ def hardest(family: Family, count: int, seed: int, look: Search, place: Path) ->
 
 # ------------------------------------------------------------------ one sample
 def _driven(family: Family, look: Search, ego: str, seen: list[Came | None]) -> Callable[[Floats], Came | None]:
-    """What a driver makes of a sample; None: no member, or lost. All of them are kept in `seen`."""
+    """A function that drives a sample; None: no member of the family, or lost. Every result is kept in `seen`."""
 
     def driven(latent: Floats) -> Came | None:
         values = family.values(latent)
@@ -89,7 +89,7 @@ def _driven(family: Family, look: Search, ego: str, seen: list[Came | None]) -> 
 
 
 def _hardness(result: Came | None) -> float | None:
-    """The larger delta-v where the ego touches, else minus its least clearance; None: nothing to judge."""
+    """The larger delta-v where the ego touches, else minus its least clearance; None without a result."""
     if result is None:
         return None
     return result.severity.worst_delta_v_mps if result.severity else -result.closest_m

@@ -1,8 +1,8 @@
-"""One script, one ego, one driver: the drive and its files. A drive that is there already is not driven again.
+"""One script, one ego, one driver: the drive and its files. A finished drive is not repeated.
 
     drive/<driver>/<ego>/   drive.json, trajectories.csv, drive.html
 
-Nothing that the script's case left is touched.
+The other files of the case stay as they are.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ FOLDER = "drive"
 
 @dataclass(frozen=True)
 class Order:
-    """What is to be driven of every case."""
+    """The drivers, egos and options to apply to every case."""
 
     drivers: tuple[DriverEntry, ...]
     ego: str = ""
@@ -129,7 +129,7 @@ def _leave(driven: Drive, told: Mapping[str, Any], target: Path, order: Order) -
 def drive_folders(folders: Sequence[Path], order: Order, jobs: int) -> Iterator[dict[str, Any]]:
     """Drive many cases, some at a time; results as they come, in the order of the folders, failures among them.
 
-    Nothing is kept: who wants many results counts them.
+    Results are not kept: with many cases the caller counts them.
     """
     if jobs <= 1 or len(folders) == 1:
         for folder in folders:

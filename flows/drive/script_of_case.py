@@ -1,4 +1,4 @@
-"""A finished case's folder as a script that can be handed over. Reads files only; believes them."""
+"""A finished case's folder as a script for drivers. Reads files and does not check them again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Outcomes counted: a row a driver and role, shares with Wilson's interval. Knows the contents of drive.json."""
+"""Outcomes counted: one row per driver and role, shares with Wilson's interval. Reads contents of drive.json."""
 
 from __future__ import annotations
 

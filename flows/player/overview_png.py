@@ -1,4 +1,4 @@
-"""picture.png: the network with everyone's path over time, for MLflow and for papers. Knows matplotlib."""
+"""picture.png: the network with all paths over time, for MLflow and for papers."""
 
 from __future__ import annotations
 

@@ -198,7 +198,7 @@ def _generation(ran: Ran) -> Iterator[tuple[str, float]]:
 
 
 def _people(said: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
-    """Facts that people gave, and those that were read otherwise; nothing of a case that nobody looked at."""
+    """Facts that people gave, and those that were read otherwise; nothing of a case without such facts."""
     if said.get("facts"):
         yield from (("person_facts", float(said["facts"])), ("person_given", float(said["facts"])))
         yield "person_disagreed", float(said["disagreed"])
@@ -216,7 +216,7 @@ def _truth(marks: Mapping[str, float], generated: bool) -> dict[str, float]:
 
 
 def _conflict(figures: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
-    """What tells crashes apart; of a figure by actor the one of whoever had to act first."""
+    """Figures of the conflict; of a figure by actor that of the actor that had to act first."""
     for name, key in _CONFLICT.items():
         value = figures.get(key)
         if isinstance(value, Mapping):

@@ -51,7 +51,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Table:
-    """A table whole: what it says, in which reading, and compared with whom."""
+    """One table: its figures, their reading, and the reference arm."""
 
     key: str
     title: str

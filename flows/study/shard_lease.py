@@ -1,6 +1,6 @@
 """A lease on a shard: an object whose number moves while its holder lives and can reach the storage.
 
-No clock is compared between hosts: the holder counts, and whoever watches measures with the own clock how long
+No clock is compared between hosts: the holder counts, and the watcher measures with its own clock how long
 the count has stood still. It lies on the storage and not in Prefect because a worker that cannot reach the
 storage cannot hand in results, whatever it tells the server. Knows no Prefect.
 """
@@ -76,4 +76,4 @@ class Lease:
             try:
                 self.beat()
             except Unreachable:
-                continue  # a short cut is no end: whoever watches decides how long is too long
+                continue  # a short interruption: the watcher decides how long is too long

@@ -5,10 +5,10 @@
     results/<arm>/<case>/<run>.tar.gz      one finished case, one object, written before its mark
     done/<arm>/<case>.<digest>.json        the mark: which object is the result, its SHA-256; written last
     failed/...                             marks of failed cases: ended for now, tried again by the next study
-    leases/<shard>.json                    who works on a shard; the number in it moves while the worker lives
+    leases/<shard>.json                    the worker of a shard; the number in it grows while the worker lives
 
-A case is done when its mark is there, never before. Object storage has no rename and no lock: whoever marks
-second finds the mark and takes the own object away, and should two mark in the same instant the later mark
+A case is done when its mark is there, never before. Object storage has no rename and no lock: the second
+worker finds the mark and removes its own object, and should two mark in the same instant the later mark
 stands, which names one whole object all the same. Knows no Prefect and no configuration.
 """
 
@@ -40,7 +40,7 @@ class Unreachable(MissingTool):
 
 @dataclass(frozen=True)
 class Mark:
-    """What stands in a mark: which object is the result of a job, and who made it."""
+    """Content of a mark: the object that is the result of a job, and its run and host."""
 
     arm: str
     case: str

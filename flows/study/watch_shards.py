@@ -1,6 +1,6 @@
-"""Watching the shards of a study: who has one, whose lease stands still, what has come home.
+"""The watcher of a study's shards: their runs, their leases, and the results that have arrived.
 
-Prefect leaves the run of a killed worker RUNNING for good, and a pool's limit counts it; so whoever started the
+Prefect leaves the run of a killed worker RUNNING, and a pool's limit counts it; so the process that started the
 study watches: a run without a sign of life is given up (marked crashed, which frees its place) and its shard is
 submitted again. Finished cases are found by their marks; only what was running is done again. The watcher may
 die too: started again it reads the marks and goes on. Knows runs by their ids only, no Prefect, and no clock

@@ -1,7 +1,7 @@
-"""Who works on which report: claims with a heartbeat, numbered, so that a dead worker's report is taken again.
+"""Claims of workers on reports, numbered and with a heartbeat, so that a dead worker's report is taken again.
 
-A claim is the file `<digest>.<n>`. The first worker makes number 1; whoever finds the highest number
-silent for longer than the lease makes the next one. Making is exclusive (Place.create), and nobody writes to
+A claim is the file `<digest>.<n>`. The first worker makes number 1; a worker that finds the highest number
+silent for longer than the lease makes the next one. Making is exclusive (Place.create), and no worker writes to
 another's claim, so of many that see the same dead claim one succeeds. A worker that was only stopped for a while
 sees the higher number before it hands in. Ages are told by the store's clock: a lease must be longer than the clocks
 of the hosts are apart. Knows no report.
@@ -31,7 +31,7 @@ ALONE_FROM = 3
 MAX_TAKES = 6
 """A report whose worker died so often is put apart as failed."""
 SAME_S = 2.0
-"""A process is told again by its number and start; the start is known to within the clock's adjustments."""
+"""A process is identified by number and start time; the start time is exact to within clock adjustments."""
 
 
 @dataclass(frozen=True)
@@ -58,14 +58,14 @@ class Claims:
     _guard: threading.Lock = field(default_factory=threading.Lock)
 
     def take(self, digest: str, alone: bool = True) -> Claim | None:
-        """Claim a report; None if somebody has it, or if it must be taken alone and is not."""
+        """Claim a report; None if another worker has it, or if it must be taken alone and is not."""
         if digest in self._held:
             return None
         if claim := self._make(digest, 1):
             return claim
         highest = self._highest(digest)
         if highest == 0:
-            return None  # it was let go this instant: whoever looks again will see why
+            return None  # it was released this instant: the next look shows why
         if self._alive(f"{CLAIMS}/{digest}.{highest}"):
             return None
         return self._make(digest, highest + 1) if alone or highest + 1 < ALONE_FROM else None
@@ -89,11 +89,11 @@ class Claims:
         return not _is_dead(self.place.read(name) or b"")
 
     def is_mine(self, claim: Claim) -> bool:
-        """Whether nobody has taken the report over."""
+        """Whether no other worker has taken the report over."""
         return self._highest(claim.digest) == claim.number
 
     def release(self, claim: Claim) -> None:
-        """Let go, the highest number last: nobody must see a lower one alone and think it dead."""
+        """Release, the highest number last: a lower one alone would look dead to other workers."""
         with self._guard:
             self._held.pop(claim.digest, None)
             for number in range(1, claim.number + 1):
@@ -139,7 +139,7 @@ class Claims:
 
 
 def _holder() -> bytes:
-    """Who claims: a token of its own each time, and the process for those that can see it."""
+    """The holder of a claim: a fresh token, and the process for workers on the same machine."""
     about = {"token": uuid.uuid4().hex, "machine": machine(), "pid": os.getpid(), "born": _born(os.getpid())}
     return json.dumps(about).encode()
 

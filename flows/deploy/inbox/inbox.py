@@ -48,7 +48,7 @@ def inbox_flow(
     """Turn what lies at an address into scenarios; how many ended how.
 
     `address`: any fsspec address; by default the variable SGCAD_INBOX, then runs/inbox. A report counts as whole when
-    nobody has written to it for `settle_s`. A worker that says nothing for `lease_s` loses its reports. The run ends
+    it did not change for `settle_s`. A worker that is silent for `lease_s` loses its reports. The run ends
     when the inbox is empty or nothing could be taken for `wait_s`, but not before `watch_s` have passed.
     """
     address, named, config = inbox_address(address), overrides_of(overrides), config or settings.default_config()

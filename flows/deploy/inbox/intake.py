@@ -1,9 +1,9 @@
-"""The inbox as a whole: which reports are ready, who takes them, where they go afterwards, each exactly once.
+"""The inbox: which reports are ready, which worker takes them, where they are moved, each exactly once.
 
-    <address>/report.txt ...       dropped by anybody: .txt, .xml, .pdf, or a folder a case
+    <address>/report.txt ...       put there by users: .txt, .xml, .pdf, or a folder a case
     <address>/done|refused|failed/<case>/    the report and outcome.json, afterwards
-    <address>/.inbox/claims        who works on what (flows/deploy/inbox/claims.py)
-    <address>/.inbox/ledger        one file a content that has been done: what makes "once" true
+    <address>/.inbox/claims        the workers of the reports (flows/deploy/inbox/claims.py)
+    <address>/.inbox/ledger        one file per finished content: no content runs twice
 
 A report is known by its content's digest, whatever it is called. Order at the end of a case: ledger, move,
 claim; a process killed in between leaves what the next look finishes. Knows no Prefect and not how a case is run.
@@ -43,7 +43,7 @@ Do = Callable[[Sequence[Case], OnResult], None]
 
 
 class Taken(NamedTuple):
-    """A report that is ours for now, with a copy of its content that nobody else changes."""
+    """A report that this worker has claimed, with a private copy of its content."""
 
     entry: Entry
     claim: Claim
@@ -133,7 +133,7 @@ class Intake:
         return taken
 
     def _waiting(self) -> list[Entry]:
-        """All entries but our folders and what is being moved away; the listing comes first, then who leaves."""
+        """All entries but result folders and entries being moved away; listed before the moves are read."""
         entries = [e for e in self.place.entries() if e.name not in APART.values()]
         leaving = self.place.leaving()
         return [e for e in entries if e.name not in leaving]

@@ -132,7 +132,7 @@ def verdict_of(result: Mapping[str, Any]) -> str:
         return f"near crash, {'as declared' if near['realised'] else 'not as declared'}"
     if not collision.get("declared"):
         return "no contact is declared"
-    seen = contact_of(result) or "nobody touches"
+    seen = contact_of(result) or "no contact"
     return f"{seen}, {'as declared' if collision['realised'] else 'not as declared'}"
 
 

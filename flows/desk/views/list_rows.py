@@ -162,7 +162,7 @@ def place_of(facts: Iterable[Mapping[str, Any]], result: Mapping[str, Any]) -> s
 
 
 def contact_of(result: Mapping[str, Any]) -> str:
-    """Who meets whom with which sides, as observed, the striker first; "" where nobody touches."""
+    """The observed first contact, actors and sides, the striker first; "" without contact."""
     collision = result.get("collision") or {}
     seen, declared = collision.get("observed"), collision.get("declared") or {}
     if not seen:

@@ -1,4 +1,4 @@
-"""Who avoids what: the outcome of every drive of a study by case, driver and role, and the card that shows it.
+"""Outcomes of a study's drives by case, driver and role, and the card that shows them.
 
 Outcomes come from metrics.json (`drive`), pages from the case's folder. Knows no driver.
 """
@@ -25,7 +25,7 @@ NOTE = (
 
 
 class Handed(NamedTuple):
-    """One drive of a study; `ego`: who was driven ("" in results of older versions)."""
+    """One drive of a study; `ego`: the driven actor ("" in results of older versions)."""
 
     arm: str
     case: str
@@ -79,7 +79,7 @@ def card(study: Study, place: Path) -> str:
     at = {(d.case, *d.column): d for d in drives}
     rows = "\n".join(_row(case, [at.get((case, *c)) for c in columns], place) for case in by_difference(drives))
     return (
-        '<section class="card" id="drives"><h3>Who avoids what</h3>'
+        '<section class="card" id="drives"><h3>Outcomes by driver</h3>'
         f'<p class="note">{escape(NOTE)}</p><div class="scroll drives"><table><thead>{_head(study, columns)}'
         f"{_sums(drives, columns)}</thead><tbody>{rows}</tbody></table></div></section>"
     )

@@ -35,7 +35,7 @@ LACKING_SHOWN = 6
 VERDICTS = (
     ("intersections_wrong", "intersections", 0.0), ("lanes_wrong", "lanes", 0.0), ("connectivity_wrong", "parts", 0.0),
     ("lanes_total", "lanes total", 1.0), ("legs", "legs", 1.0), ("vehicle_count", "vehicles", 1.0),
-    ("initial_heading", "headings", 1.0), ("maneuver", "maneuvers", 1.0), ("collision_pair", "who touches", 1.0),
+    ("initial_heading", "headings", 1.0), ("maneuver", "maneuvers", 1.0), ("collision_pair", "contact pair", 1.0),
     ("collision_areas", "sides", 1.0),
 )  # fmt: skip
 """Value, what the gallery calls it, and which value is right."""

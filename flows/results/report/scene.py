@@ -1,5 +1,4 @@
-"""One executed case to be drawn from its folder: the road, everyone's path, the first contact. Knows no colors but
-the movers' and no pixels."""
+"""One executed case to be drawn from its folder: the road, all paths, the first contact. Knows no pixels."""
 
 from __future__ import annotations
 

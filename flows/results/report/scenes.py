@@ -29,7 +29,7 @@ MOMENTS_S = (-3.0, -1.0, 0.0, 0.5)
 NEAR_M = 28.0
 GOOD, BAD = "#1b7f4d", "#c4203a"
 MARKS = (
-    ("initial_heading", "headings"), ("maneuver", "maneuvers"), ("collision_pair", "who touches first"),
+    ("initial_heading", "headings"), ("maneuver", "maneuvers"), ("collision_pair", "first contact pair"),
     ("collision_areas", "on which sides"),
 )  # fmt: skip
 
