@@ -1,4 +1,4 @@
-"""Plugins and configs in words: `sgcad plugins list|show`, `sgcad check`. Prints to stdout."""
+"""Descriptions of plugins and configs on stdout, for `sgcad plugins list|show` and `sgcad check`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TRAITS = ("asks_model", "needs_prior", "gives_logits", "stage")
 
 
 def list_plugins() -> None:
-    """All installed names with where they come from, and which entry points lead nowhere; imports none of them."""
+    """Print all installed plugins with their packages, and entry points without a module; imports none of them."""
     table, gone = Table("kind", "name", "from"), []
     for kind in KINDS:
         there = installed(kind)
@@ -29,14 +29,16 @@ def list_plugins() -> None:
             if name in there:
                 table.add_row(kind, escape(name), escape(origin))
             else:
-                gone.append(f"{kind}/{name} is registered by {origin}, which does not exist: install that package anew")
+                gone.append(
+                    f"{kind}/{name} is registered by {origin}, which does not exist: install that package again"
+                )
     _console().print(table)
     for line in gone:
         _console().print(escape(line), soft_wrap=True)
 
 
 def show_plugin(name: str) -> None:
-    """Fields of every plugin of that name. Raises ConfigError naming what is installed."""
+    """Print the fields of every plugin of a name. Raises ConfigError naming the installed plugins."""
     kind, _, bare = name.rpartition("/")
     found = [k for k in KINDS if bare in catalogue(k) and kind in ("", k)]
     if not found:
@@ -77,7 +79,7 @@ def _type(schema: dict[str, Any]) -> str:
 
 
 def describe_config(config: Config) -> None:
-    """Say what a config that passed its check would do."""
+    """Print a checked config: its plugins and their fields."""
     console = _console()
     console.print(f"{escape(config.name)}: fine; seed {config.seed}, at most {config.max_attempts} attempts a stage")
     table = Table("kind", "plugin", "fields")

@@ -1,4 +1,4 @@
-"""`make demo`: the bundled reports become scenarios under the default config; says what happens and what to do next.
+"""`make demo`: turns the bundled reports into scenarios under the default config and prints the next steps.
 
 python -m flows.demo [OUT]
 """
@@ -46,7 +46,7 @@ def met(tally: summary.Tally) -> list[str]:
 
 
 def ending(batch: Batch) -> list[str]:
-    """Three pictures, what to open, and two commands to go on with."""
+    """Lines with the pictures, a page to open, and two commands to continue with."""
     places = [CaseFolder(batch.out, config.name, case.id).path for config in batch.configs for case in batch.cases]
     pictures = [place / "picture.png" for place in places if (place / "picture.png").is_file()]
     page = next((place / "player.html" for place in places if (place / "player.html").is_file()), None)
@@ -63,7 +63,7 @@ def ending(batch: Batch) -> list[str]:
 
 
 def _shown(path: Path) -> str:
-    """As a person in this folder would type it."""
+    """The path relative to the current folder, if it lies below it."""
     here = Path.cwd()
     return escape_plain(str(path.relative_to(here) if path.is_relative_to(here) else path))
 

@@ -1,4 +1,4 @@
-"""`sgcad doctor`: is everything there, and does it work? Each line says what, the value, and the remedy."""
+"""`sgcad doctor`: checks the installation; each line gives the check, its value, and the remedy of a fault."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ PACKAGES = (
 LOW_MB = 2000
 STALE_S = 24 * 3600
 CHILDREN = ("prefect.server.api.server:create_app", "flows.server", "sgcad_core.system.worker_process")
-"""Modules that only ever run as another command's child."""
+"""Modules that run only as children of another command."""
 
 
 class Trouble(Exception):
@@ -45,7 +45,7 @@ def examine(out: Path) -> bool:
     for name, test in CHECKS.items():
         started = time.perf_counter()
         if stands_on := wrong & NEEDS.get(name, set()):
-            console.print(f"[yellow]not looked at[/] {name}: mend {', '.join(sorted(stands_on))} first")
+            console.print(f"[yellow]not checked[/] {name}: repair {', '.join(sorted(stands_on))} first")
             continue
         try:
             said, mark = test(out), "[green]ok[/]   "
@@ -108,7 +108,7 @@ def _writable(out: Path) -> str:
 
 
 def _home(out: Path) -> str:
-    """Prefect keeps its database in a folder of the user's, and would try to make it for half a minute."""
+    """Check Prefect's folder first: Prefect itself would try to create it for half a minute."""
     home = settings.prefect_home()
     try:
         home.mkdir(parents=True, exist_ok=True)
@@ -120,7 +120,7 @@ def _home(out: Path) -> str:
 
 
 def _flow(out: Path) -> str:
-    """One real flow, on the user's server or one of our own."""
+    """Run a real flow, on the user's server or on one of this command."""
     with prefect_server() as server:
         if server:
             server.wait()
@@ -136,14 +136,14 @@ def _flow(out: Path) -> str:
 
 
 def _run_tiny_flow() -> list[str]:
-    """Run a flow; ids of runs that have said RUNNING for so long that nothing can stand behind them."""
+    """Run a flow; ids of runs that have been RUNNING for longer than STALE_S, left by killed batches."""
     from prefect import flow
     from prefect.client.orchestration import get_client
     from prefect.events.worker import EventsWorker
     from prefect.settings import PREFECT_FLOWS_HEARTBEAT_FREQUENCY, temporary_settings
 
     def tiny() -> None:
-        """Nothing to do."""
+        """Do nothing."""
 
     with temporary_settings({PREFECT_FLOWS_HEARTBEAT_FREQUENCY: None}):
         flow(name="doctor")(tiny)()
@@ -155,11 +155,11 @@ def _run_tiny_flow() -> list[str]:
 
 
 def _services(out: Path) -> str:
-    """What `make up` started here, or what the named server has."""
+    """Check the services that `make up` started here, or those of the named server."""
     there = health.noted(health.services_folder(out))
     api = f"{there['server'].address}/api" if "server" in there else settings.prefect_url()
     if not api:
-        return "none started here and no server named (PREFECT_API_URL); `make up` starts them"
+        return "none started here and no server named in PREFECT_API_URL; `make up` starts them"
     said = [(s.healthy(), f"{s.name} {'well' if s.healthy() else f'not well, see {s.log}'}") for s in there.values()]
     said += health.server_lines(api)
     line = "; ".join(text for _, text in said)
@@ -198,7 +198,7 @@ def _leftovers(out: Path) -> str:
 
 
 def _orphans() -> Iterator[psutil.Process]:
-    """Our processes that no command waits for. In a container the command itself may be process 1."""
+    """The project's processes without a parent command. In a container the command itself may be process 1."""
     try:
         if any(part in " ".join(psutil.Process(1).cmdline()) for part in ("sgcad", "prefect", "flows.")):
             return
@@ -223,4 +223,4 @@ CHECKS: dict[str, Callable[[Path], str]] = {
     "leftovers": _leftovers,
 }
 NEEDS: dict[str, set[str]] = {"flow": {"home", "output"}, "tracking": {"output"}, "services": {"home"}}
-"""Checks that take seconds and tell nothing new where one of these is wrong."""
+"""Checks that are skipped if one of these has failed."""

@@ -1,4 +1,4 @@
-"""Whether a model will fit this machine: what its weights take against what is there. Starts nothing."""
+"""Check whether a model's weights fit into this machine's memory. Starts nothing."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from flows.batch import machine
 from sgcad_core.config import Config
 
 MARGIN = 1.1
-"""Beside the weights stand caches and activations; below this share over the weights nothing can be asked."""
+"""Memory needed over that of the weights, for caches and activations."""
 
 
 def told(config: Config, there: dict[str, Any] | None = None) -> str:
-    """One line if the weights are known not to fit, else an empty text. `there`: a machine as `hardware` tells it."""
+    """A warning if the weights are known not to fit, else an empty text. `there`: the machine as of `hardware`."""
     need = config.backbone.weights_gb() if config.backbone else None
     if need is None:
         return ""

@@ -1,8 +1,8 @@
-"""A study handed to the workers of many hosts: what has to be there before Prefect is imported.
+"""A study on many hosts: the checks before Prefect is imported (flows/deploy/shards.py does the rest).
 
-    away.run(plan(study, out), Away("s3://bucket/alpha"), on_ending)       # sgcad study alpha --hosts s3://bucket/alpha
+    hosts_preflight.run(plan(study, out), Away("s3://bucket/alpha"), on_ending)    # sgcad study alpha --hosts s3://...
 
-Knows when to import Prefect; see flows/deploy/shards.py for the rest and docs/scale.md for how to set it up.
+docs/scale.md says how to set the hosts up.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from sgcad_core.errors import ConfigError, MissingTool
 
 @dataclass(frozen=True)
 class Away:
-    """Where the hosts meet (an fsspec address that all of them reach) and which deployment they serve."""
+    """Shared storage of the hosts (an fsspec address that all of them reach) and the deployment that they serve."""
 
     address: str
     deployment: str = "shard/shard"
@@ -26,12 +26,14 @@ class Away:
 
 
 def run(plan: Plan, away: Away, on_ending: OnEnding) -> list[str]:
-    """Run a study on whatever hosts serve the deployment; which shards were submitted again, and why.
+    """Run a study on the hosts that serve the deployment; the shards submitted again, with reasons.
 
-    Raises ConfigError, MissingTool (no server, no storage), KeyboardInterrupt; what is marked stays done.
+    Raises ConfigError, MissingTool (no server, no storage), KeyboardInterrupt; marked cases stay finished.
     """
     if plan.batch.fresh:
-        raise ConfigError("--fresh with --hosts: marks of finished cases lie at the address; give --hosts a new one")
+        raise ConfigError(
+            "--fresh with --hosts: the address holds marks of finished cases; give --hosts another address"
+        )
     url = settings.prefect_url()
     if not url or not answers(url):
         said = f"{url} does not answer" if url else "none is named"
@@ -45,5 +47,5 @@ def run(plan: Plan, away: Away, on_ending: OnEnding) -> list[str]:
 
 
 def resubmitted_lines(again: list[str]) -> str:
-    """One line a shard that had to be submitted again."""
+    """One line per shard that was submitted again."""
     return "\n".join(f"submitted again: {line}" for line in again)

@@ -1,8 +1,8 @@
 """A folder at any fsspec address (file, s3://, gs://, memory://), with the few operations that an inbox needs.
 
-What is promised is said operation by operation, since stores differ: `create` is exclusive on local files (a
+Guarantees differ by store and are given per operation: `create` is exclusive on local files (a
 hard link) and where the store has conditional writes (S3, Google, Azure through fsspec's create mode); elsewhere it
-looks first and reads back afterwards, which two writers in the same instant can defeat. Knows no report.
+looks first and reads back afterwards, which fails for two writers in the same instant.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from typing import Any
 from sgcad_core.errors import ConfigError, MissingTool
 
 HIDDEN = ".inbox"
-"""Everything that is ours and no report: claims, ledger, half-written files."""
+"""Folder of claims, ledger and half-written files; no reports."""
 _TIMES = ("mtime", "LastModified", "last_modified", "updated", "created")
 
 
 @dataclass(frozen=True)
 class Stamp:
-    """A file as a listing shows it; `modified` in seconds since 1970, 0 where the store tells none."""
+    """A file in a listing; `modified` in seconds since 1970, 0 if the store does not give it."""
 
     name: str
     size: int
@@ -43,7 +43,7 @@ class Entry:
 
     @property
     def newest(self) -> float:
-        """When it was last written to."""
+        """Time of the last change of its files."""
         return max((f.modified for f in self.files), default=0.0)
 
 
@@ -64,7 +64,7 @@ class Place:
             raise MissingTool(f"{self.address}: {fault} (`pip install 'sg-cadvlm[hosts]'` brings s3fs)") from fault
         except ValueError as fault:
             raise ConfigError(
-                f"{self.address}: no address that can be opened ({fault}); give a folder or s3://..."
+                f"{self.address}: cannot be opened ({fault}); give a folder or an address such as s3://bucket/folder"
             ) from fault
         object.__setattr__(self, "fs", fs)
         object.__setattr__(self, "root", root.rstrip("/"))
@@ -80,13 +80,13 @@ class Place:
 
     # ------------------------------------------------------------------ looking
     def entries(self) -> list[Entry]:
-        """Files and folders directly here, by name, hidden ones left out; none where nothing is."""
+        """Files and folders directly in the address, by name, without hidden ones; empty if it does not exist."""
         self._finish_moves()
         names = sorted((name, about) for name, about in self._list("").items() if not name.startswith("."))
         return [entry for name, about in names if (entry := self._entry(name, about))]
 
     def entry(self, name: str) -> Entry | None:
-        """One of them as it is now; None if it is gone."""
+        """An entry's current state; None if it is gone."""
         try:
             return self._entry(name, self.fs.info(self.path(name)))
         except OSError:
@@ -193,7 +193,7 @@ class Place:
         self._leave(marker)
 
     def leaving(self) -> set[str]:
-        """Entries whose copy is complete and whose files are being removed: no reports any more."""
+        """Entries whose copy is complete and whose files are being removed."""
         return {name for _, name, _ in self._moves()}
 
     def _finish_moves(self) -> None:
@@ -208,7 +208,7 @@ class Place:
                 yield f"{HIDDEN}/leaving/{file}", note["name"], [Stamp(*values) for values in note["files"]]
 
     def _leave(self, marker: str) -> None:
-        """Remove the files of a finished copy, unless they were written anew, then the note."""
+        """Remove the files of a finished copy, unless they were written again, then the note."""
         for found, name, files in list(self._moves()):
             there = self.entry(name) if found == marker else None
             for file in there.files if there else ():

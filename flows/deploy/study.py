@@ -1,4 +1,4 @@
-"""The `study` deployment: a study file, run by hand from Prefect's page with its parameters. Thin: see flows/study.
+"""The `study` deployment: a study file, started by hand from Prefect's page with its parameters.
 
 Import after `settings.quiet_libraries()`.
 """

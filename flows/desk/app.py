@@ -1,4 +1,4 @@
-"""The web application: pages, errors in words, the guard around all of it. Starts no server."""
+"""The web application: pages, error pages, and the guard around them. Starts no server."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def application(root: Path, gate: Gate | None = None, mlflow: str = "", prefect:
 
 
 def _life(desk: Desk) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:
-    """Begin to read as the server starts; end the processes with it."""
+    """Start reading the folder with the server; end the worker processes with it."""
 
     @asynccontextmanager
     async def life(_: FastAPI) -> AsyncIterator[None]:
@@ -43,13 +43,13 @@ def _life(desk: Desk) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:
 
 
 def _gone(request: Request, fault: Exception) -> Response:
-    return _page(request, 404, "Not here", str(fault))
+    return _page(request, 404, "Not found", str(fault))
 
 
 def _http(request: Request, fault: Exception) -> Response:
     status = fault.status_code if isinstance(fault, HTTPException) else 500
-    words = {404: ("Not here", "There is no such page."), 405: ("Not so", "This page only shows; it takes no changes.")}
-    title, text = words.get(status, ("That did not work", "The desk cannot answer this."))
+    words = {404: ("Not found", "There is no such page."), 405: ("Not allowed", "This page accepts no changes.")}
+    title, text = words.get(status, ("Fault", "The desk cannot answer this request."))
     return _page(request, status, title, text)
 
 

@@ -1,4 +1,4 @@
-"""What the desk's pages share: the folder, its index, links, the mending worker, the templates."""
+"""The shared state of the desk's pages: index, links, mending workers, templates."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ BASIS_WORDS: Mapping[str, str] = {
 
 
 class Gone(Exception):
-    """A case that is not there (any more); the message is for the person."""
+    """A case that does not exist (any more); the message is shown."""
 
 
 @dataclass
@@ -50,7 +50,7 @@ class Desk:
         """A case's row and folder. Raises Gone, also for one whose result cannot be read."""
         row, folder = self.index.row(key), self.index.folder(key)
         if row is None or folder is None:
-            raise Gone(f"There is no case {key!r} in this folder: it was removed, or is being written anew just now.")
+            raise Gone(f"There is no case {key!r} in this folder: it was removed, or is being written now.")
         if row.status == UNREADABLE:
             raise Gone(row.reason)
         return row, folder

@@ -1,8 +1,8 @@
-"""What people mended, as data: `sgcad desk export RUNS --out DIR`.
+"""`sgcad desk export RUNS --out DIR`: cases corrected by people, as data.
 
-    pairs.jsonl          a line a mended case: report, facts with reasons, the specs as read and as mended
-    truth/<case>.json    the mended case as a label, for `sgcad score` and like scorers
-    rows.jsonl           a line a mended case for training: narrative, drawing, the layout and the behavior to answer
+    pairs.jsonl          one line per corrected case: report, facts with reasons, the specs as read and as corrected
+    truth/<case>.json    the corrected case as a label, for `sgcad score`
+    rows.jsonl           one line per corrected case for training: narrative, drawing, layout and behavior
 
 Only cases with a person's fact are exported: the others were not checked. Reads run folders; starts nothing.
 """
@@ -52,9 +52,9 @@ class Mended:
 
 
 def export(runs: Path, out: Path) -> list[str]:
-    """Write pairs, truth and rows of one config's mended cases; what was written, in words.
+    """Write pairs, truth and rows of one config's corrected cases; lines on what was written.
 
-    Raises BadInput where there is no result, or nothing was mended; ConfigError where `out` cannot be written.
+    Raises BadInput where there is no result or no corrected case; ConfigError where `out` cannot be written.
     """
     if not any(runs.glob("*/result.json")):
         raise BadInput(f"{runs}: no <case>/result.json in it; give the folder of one config, such as runs/template")
@@ -75,7 +75,7 @@ def export(runs: Path, out: Path) -> list[str]:
 
 
 def mended(runs: Path, left: list[str]) -> Iterator[Mended]:
-    """Cases with a person's facts that came out with both specs; `left` is told of the others."""
+    """Generated cases with a person's facts and both specs; `left` gets a line for each of the others."""
     for file in sorted(runs.glob("*/result.json")):
         folder = file.parent
         result = case_folder.CaseFolder(runs.parent, runs.name, folder.name).result() or {}
@@ -115,7 +115,7 @@ def _write(found: Iterable[Mended], out: Path) -> None:
 
 # ------------------------------------------------------------------ pairs and rows
 def pair(case: Mended) -> dict[str, Any]:
-    """A case as read and as mended, JSON-able."""
+    """A case as read and as corrected, JSON-able."""
     was = case.specs.as_read or {}
     return {
         "case": case.case,
@@ -128,7 +128,7 @@ def pair(case: Mended) -> dict[str, Any]:
 
 
 def row(case: Mended, out: Path) -> dict[str, Any]:
-    """A case as an example to learn from: the evidence and both answers. `layout` is null where no hub has all roads.
+    """A case as a training row: the evidence and both answers. `layout` is null where no hub has all roads.
 
     The drawing is copied to `out`/drawings and named relative to `out`.
     """
@@ -154,7 +154,7 @@ def _drawing(case: Mended, out: Path) -> str | None:
 
 # ------------------------------------------------------------------ truth
 def label(case: Mended) -> dict[str, Any]:
-    """The mended case as a truth file: network, vehicles, events and conditions."""
+    """The corrected case as a truth file: network, vehicles, events and conditions."""
     behavior = case.behavior
     return {
         "case": case.case,

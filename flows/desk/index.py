@@ -52,7 +52,7 @@ class Index:
         self._reader: threading.Thread | None = None
 
     def listing(self, wait_s: float = PATIENCE_S) -> Listing:
-        """What is known now; looks through the folder again if it was not just done."""
+        """The rows known now; the folder is read again unless that was just done."""
         reader = self._refresh()
         if reader is not None:
             reader.join(wait_s)
@@ -60,7 +60,7 @@ class Index:
             return Listing({key: row for key, (_, row) in self._rows.items()}, self._pending)
 
     def row(self, key: str) -> Row | None:
-        """One case, as it is on disk now; None where there is no such case. Never leaves the results folder."""
+        """One case as it is on disk now; None for an unknown case. Never leaves the results folder."""
         folder = self.folder(key)
         if folder is None:
             return None
@@ -90,7 +90,7 @@ class Index:
         return folder if inside else None
 
     def _refresh(self) -> threading.Thread | None:
-        """The thread that reads, started if none does and the last look is old."""
+        """The reading thread, started if none runs and the last reading is old."""
         with self._lock:
             if self._reader and self._reader.is_alive():
                 return self._reader
@@ -120,7 +120,7 @@ class Index:
         if known and known[0] == stamp:
             return known[1]
         if stamp[1] > LARGEST:
-            return unreadable(key, f"{RESULT} has {stamp[1] / 1e6:.0f} MB, which no case comes to")
+            return unreadable(key, f"{RESULT} has {stamp[1] / 1e6:.0f} MB, too many for a case")
         try:
             return row_of(key, json.loads((self.root / key / RESULT).read_bytes()))
         except OSError as fault:
@@ -155,7 +155,7 @@ def _below(folder: str, prefix: str, depth: int) -> Iterator[tuple[str, Stamp]]:
 
 
 def _may_hold(entry: os.DirEntry[str]) -> bool:
-    """A folder, not hidden (unfinished cases are), whose name a web address can carry; no link."""
+    """Whether it is a folder, not hidden (unfinished cases are) and no link, with a name valid in a web address."""
     try:
         entry.name.encode()
         return not entry.name.startswith(".") and entry.is_dir(follow_symlinks=False)
@@ -165,11 +165,11 @@ def _may_hold(entry: os.DirEntry[str]) -> bool:
 
 # ------------------------------------------------------------------ the version of a case
 STATES = (RESULT, "facts.yaml", "player.html")
-"""Files that change when a case is run again or mended."""
+"""Files that change when a case is run again or edited."""
 
 
 def version_of(folder: Path) -> str:
-    """A fingerprint of the case as it stands on disk."""
+    """Fingerprint of the case's state on disk; a page shows it, so that no edit is applied to an unseen state."""
     found = hashlib.sha256()
     for name in STATES:
         try:

@@ -1,8 +1,7 @@
-"""Changing a case from the desk: in a process of its own that stays warm, so that a planner's or a simulator's death
-kills no page, and only what a person has really seen is changed.
+"""Changes of a case from the desk, made in worker processes, so that a crash of planner or simulator ends no page.
 
-The near end is `Mender`; `work` is what the far end does. The page's rules: a change carries the version of the case
-that was on the screen, and is refused where the case on disk is another one by now.
+`Mender` is the desk's side, `work` that of the worker. A change carries the version of the case that was on the screen
+and is refused if the case on disk has changed since.
 """
 
 from __future__ import annotations
@@ -22,14 +21,14 @@ from sgcad_core.errors import SgcadError, SimulationFailed
 from sgcad_core.system.worker_process import Worker
 
 MEND_S, RUN_S = 60.0, 600.0
-"""Longest mending; longest running again (a model may be asked)."""
+"""Time limits of an edit and of running a case again (which may ask a model)."""
 WORKERS = 2
-"""Processes; the second one starts when two people change something at once."""
+"""Worker processes; the second one starts when two changes are made at once."""
 Kind = Literal["revise", "undo", "rerun", "warm"]
 
 
 class Changed(SgcadError):
-    """The case on disk is another than the one on the person's screen."""
+    """The case on disk differs from the one on the person's screen."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ class Order:
 
 @dataclass(frozen=True)
 class Done:
-    """What came of a change: what is to be said at which field."""
+    """Result of a change, with findings by field."""
 
     status: str
     findings: Findings
@@ -55,7 +54,7 @@ class Done:
 
 
 class Mender:
-    """Carries changes out, each case's one after the other. Thread-safe."""
+    """Makes changes, those of one case one after the other. Thread-safe."""
 
     def __init__(self, target: str = "flows.desk.mending:work") -> None:
         self._workers = [Worker(target) for _ in range(WORKERS)]
@@ -68,7 +67,7 @@ class Mender:
         self._lock = threading.Lock()
 
     def warm(self, folder: Path) -> None:
-        """Prepare in the background for changes of this case and those of its config; once each."""
+        """Prepare a worker in the background for changes of cases of this config, once per config."""
         with self._lock:
             known = folder.parent in self._warmed
             self._warmed.add(folder.parent)
@@ -80,7 +79,7 @@ class Mender:
             worker.call(Order("warm", folder), timeout_s=MEND_S)
 
     def change(self, order: Order, version: str) -> Done:
-        """Carry out a change of the case as the person saw it.
+        """Make a change of the case as the person saw it.
 
         Raises Changed, WrongEdit and BadInput (nothing was changed), SimulationFailed (the process died).
         """
@@ -96,7 +95,7 @@ class Mender:
         return done
 
     def said(self, folder: Path) -> Findings:
-        """What validators and planner said of the last change, while the case is as that change left it."""
+        """Findings of the last change, as long as the case is in the state that it left."""
         with self._lock:
             version, findings = self._said.get(folder, ("", {}))
         return findings if version == version_of(folder) else {}
@@ -124,7 +123,7 @@ class Mender:
 
 # ------------------------------------------------------------------ the far end
 def work(order: Order) -> Done | None:
-    """Carry an order out over there. Raises WrongEdit, BadInput, ConfigError."""
+    """Make a change in the worker process. Raises WrongEdit, BadInput, ConfigError."""
     from flows.case import revise_case
 
     if order.kind == "warm":
@@ -146,7 +145,7 @@ def _line(finding: Any) -> str:
 
 
 def _rerun(folder: Path) -> Done:
-    """The whole case once more, as its config says and with what people said of it."""
+    """Run the whole case again under its config, with its edits."""
     from flows.case import revise_case, run_case
     from flows.case_files import find_cases
     from sgcad_core.asking.refine import run_at_once
@@ -158,8 +157,10 @@ def _rerun(folder: Path) -> Done:
 
 
 def _warm_up(folder: Path) -> None:
-    """Do once, for nothing, what the first change of such a case would wait for: imports, plugins, the simulator's own
-    process, matplotlib's fonts. A config with a model is only built: its model is not asked for nothing."""
+    """Load what the first change would wait for: imports, plugins, the simulator's process, matplotlib's fonts.
+
+    A config with a model is only built.
+    """
     from matplotlib.figure import Figure
 
     from flows.case import revise_case
@@ -177,5 +178,5 @@ def _warm_up(folder: Path) -> None:
 def told(fault: SgcadError) -> str:
     """A fault in words for the author of the change."""
     if isinstance(fault, SimulationFailed):
-        return f"The change could not be carried out, nothing was changed: {fault}"
+        return f"The change could not be made, nothing was changed: {fault}"
     return str(fault)

@@ -1,4 +1,4 @@
-"""The desk's pages that only show: list, case, player, drawings, files. Nothing here changes anything."""
+"""The desk's read-only pages: list, case, player, drawings, files."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def case_page(request: Request, key: str) -> Response:
 
 
 def mending_of(desk: Desk, page: case_view.CasePage, folder: Path) -> dict[str, Any]:
-    """What the page needs to mend a case; where that cannot be, why."""
+    """What the page needs to edit a case, or why it cannot be edited."""
     from flows.case import revise_case
 
     nothing = {"groups": page.groups, "can_mend": False, "edits": (), "additions": (), "stamp": ""}
@@ -84,14 +84,14 @@ def mending_of(desk: Desk, page: case_view.CasePage, folder: Path) -> dict[str, 
 
 @router.get("/version/{key:path}")
 def version(request: Request, key: str) -> Response:
-    """What stands on disk now, so that an open page notices a change."""
+    """The version on disk, so that an open page notices a change."""
     _, folder = desk_of(request).case(key)
     return JSONResponse({"version": version_of(folder)})
 
 
 @router.get("/player/{key:path}")
 def player(request: Request, key: str) -> Response:
-    """The case's player, sealed off."""
+    """The case's player, in a sandbox."""
     return _file(request, key, "player.html", "text/html; charset=utf-8", {"Content-Security-Policy": PLAYER_POLICY})
 
 
@@ -107,7 +107,7 @@ def drawing(request: Request, number: int, key: str) -> Response:
 
 @router.get("/file/{name}/{key:path}")
 def download(request: Request, name: str, key: str) -> Response:
-    """One of the case's files, to keep."""
+    """One of the case's files to download."""
     if name not in case_view.FILES:
         raise Gone(f"{name!r} is no file of a case.")
     case = key.rpartition("/")[2]
@@ -116,7 +116,7 @@ def download(request: Request, name: str, key: str) -> Response:
 
 @router.get("/attempt/{attempt}/{name}/{key:path}")
 def attempt(request: Request, attempt: str, name: str, key: str) -> Response:
-    """What a writer was asked and answered, as plain text."""
+    """A writer's prompt or answer as plain text."""
     if not case_view.ATTEMPT.fullmatch(attempt) or name not in case_view.ATTEMPT_FILES:
         raise Gone(f"{attempt}/{name} is no file of an attempt.")
     return _file(request, key, f"attempts/{attempt}/{name}", "text/plain; charset=utf-8", {})
@@ -134,7 +134,7 @@ def static(name: str) -> Response:
 def _file(
     request: Request, key: str, name: str, kind: str, headers: Mapping[str, str], filename: str | None = None
 ) -> Response:
-    """A file of a case's folder, never one that a link in it leads out to."""
+    """A file of a case's folder; links that lead out of the folder are refused."""
     desk = desk_of(request)
     _, folder = desk.case(key)
     file = folder / name

@@ -76,7 +76,7 @@ def _opened(file: Path | None) -> AbstractContextManager[TextIO | None]:
 
 
 def _entries(text: str) -> list[Any]:
-    """Drivers of one --driver: one, or with @FILE all of a YAML list."""
+    """Drivers of one --driver option: one, or with @FILE those of a YAML list."""
     if not text.startswith("@"):
         return [_yaml(text)]
     try:
@@ -84,7 +84,7 @@ def _entries(text: str) -> list[Any]:
     except OSError as fault:
         raise ConfigError(f"--driver {text}: cannot be read ({fault.strerror}); give a YAML file") from fault
     if not isinstance(listed, list) or not listed:
-        raise ConfigError(f"--driver {text}: no list of drivers; write one driver a line, each behind a dash")
+        raise ConfigError(f"--driver {text}: no list of drivers; write one driver per line, each after a dash")
     return listed
 
 

@@ -44,14 +44,14 @@ from sgcad_core.records.specs import BehaviorSpec
 from sgcad_core.system import temp_folders
 
 TRIES = 40
-"""Draws a member at most: a family of which fewer are the same crash is too wide."""
+"""Maximum draws per member: a family with fewer draws that are the same crash is too wide."""
 BACK = 0.45
 """Straight run before the logical file's trajectories, of the time to the contact: the fastest pace needs 0.4."""
 
 
 @dataclass(frozen=True)
 class Family:
-    """A case ready to be varied."""
+    """A case to be varied: its basis and its parameters."""
 
     folder: Path
     basis: Basis
@@ -68,7 +68,9 @@ def family_of(folder: Path, role_of: Mapping[str, str] | None = None) -> Family:
     script = script_of(folder, role_of)
     basis = basis_of(script)
     if basis is None:
-        raise BadInput(f"{folder}: its first contact is not the declared one, or of no vehicle; nothing to vary about")
+        raise BadInput(
+            f"{folder}: its first contact is not the declared one, or has no vehicle, so it cannot be varied"
+        )
     facts = tuple(json.loads((folder / "result.json").read_text(encoding="utf-8")).get("facts", ()))
     return Family(folder, basis, spreads(script, facts, basis.delays), facts)
 
@@ -92,7 +94,7 @@ def write_family(family: Family, count: int, seed: int, add: Callable[[Path], No
 
 # ------------------------------------------------------------------ members
 def members(family: Family, count: int, seed: int) -> tuple[list[tuple[dict[str, float], Script]], int]:
-    """So many members with their values, and how many draws that took. Raises BadInput where too few are the same."""
+    """`count` members with their values, and the number of draws. Raises BadInput where too few draws are members."""
     rng = np.random.default_rng(seed)
     found: list[tuple[dict[str, float], Script]] = []
     drawn = 0
@@ -102,7 +104,9 @@ def members(family: Family, count: int, seed: int) -> tuple[list[tuple[dict[str,
         if (made := member(family.basis, values)) is not None:
             found.append((values, made))
         elif drawn > TRIES * (len(found) + 5):
-            raise BadInput(f"{family.folder}: of {drawn} draws only {len(found)} are the same crash; nothing to vary")
+            raise BadInput(
+                f"{family.folder}: of {drawn} draws only {len(found)} are the same crash; this case cannot be varied"
+            )
     return found, drawn
 
 
@@ -130,7 +134,7 @@ def files_of(family: Family, sets: Sequence[Mapping[str, float]], seed: int) -> 
 
 
 def _conditions(family: Family) -> BehaviorSpec:
-    """Light, weather and surface as read: all that a scenario file takes of a behavior."""
+    """Light, weather and surface as read: the part of a behavior that a scenario file needs."""
     told = {f["field"].split(".")[1]: f["value"] for f in family.facts if f["field"].startswith("conditions.")}
     surface = told.get("surface") if told.get("surface") in SURFACES else None
     weather, light = told.get("weather"), told.get("light")
@@ -167,7 +171,7 @@ def _meets(basis: Basis, actor: str, back: float) -> Meets:
 def _manifest(
     family: Family, found: Sequence[tuple[dict[str, float], Script]], drawn: int, seed: int
 ) -> dict[str, Any]:
-    """Of every value whether it is a fact of the report, inferred, or varied."""
+    """Content of manifest.json: for every value whether it is a fact of the report, inferred, or varied."""
     script = family.basis.script
     return {
         "case": script.case, "seed": seed, "count": len(found), "drawn": drawn,

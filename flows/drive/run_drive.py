@@ -46,14 +46,14 @@ class Order:
 
 
 def drive_folder(folder: Path, order: Order) -> list[dict[str, Any]]:
-    """Drive a finished case as ordered; the contents of its drive.json files. Raises BadInput, ConfigError."""
+    """Run a finished case's drives; the contents of their drive.json files. Raises BadInput, ConfigError."""
     script = script_of(folder, order.role_of)
     told = (folder / "trajectories.csv").read_bytes() + (folder / "road.net.xml").read_bytes()
     return drive_script(script, order, folder / FOLDER, hashlib.sha256(told).hexdigest())
 
 
 def drive_script(script: Script, order: Order, place: Path, content: str = "") -> list[dict[str, Any]]:
-    """Drive a script as ordered. `content`: digest of what the script is made of; "": nothing is reused."""
+    """Run a script's drives. `content`: digest of the script's files; "": finished drives are not reused."""
     found = []
     for ego, role in egos(script, order.ego, order.roles):
         told: _Told | None = None
@@ -69,7 +69,7 @@ def drive_script(script: Script, order: Order, place: Path, content: str = "") -
 
 @dataclass(frozen=True, eq=False)
 class _Told:
-    """An ego's staging with what could have been done: the same for all drivers."""
+    """An ego's staging and its last moments to avoid the contact: the same for all drivers."""
 
     staging: Staging
     avoidance: dict[str, Any] | None

@@ -34,7 +34,7 @@ _pen = threading.Lock()  # matplotlib's font cache is not made for threads
 
 
 def png(view: View) -> bytes:
-    """The picture, about 700 px square."""
+    """The picture as PNG, about 700 px square."""
     with _pen:
         return _draw(view)
 
@@ -92,7 +92,7 @@ def draw_network(axes: Axes, drawing: Drawing, points_per_m: float) -> None:
 
 
 def draw_path(axes: Axes, mover: Mover) -> None:
-    """A way driven and where its driver was each second, the later the stronger."""
+    """Draw an actor's path and its box every second, the later the stronger."""
     from matplotlib.collections import PolyCollection
 
     track, color = mover.track, mover.color
@@ -118,7 +118,7 @@ def _contact(axes: Axes, view: View) -> None:
 
 
 def _legend(axes: Axes, view: View) -> None:
-    """Case, what touched what and when, a scale bar, north up."""
+    """Draw the case's name, the contact and its time, and a scale bar."""
     observed = view.result["collision"]["observed"]
     text = view.record.case
     if observed:

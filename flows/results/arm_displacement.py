@@ -1,5 +1,7 @@
-"""How far an arm's motion lies from the reference arm's. No trajectory of a real crash is known, so this is between
-arms: networks have frames of their own, therefore two runs are laid over each other at V1's pose at first contact."""
+"""Displacement of an arm's motion from the reference arm's, since trajectories of real crashes are unknown.
+
+Networks have different frames, so two runs are aligned at V1's pose at the first contact.
+"""
 
 from __future__ import annotations
 
@@ -39,16 +41,16 @@ def errors_against(study: Study, reference: str | None) -> dict[str, list[Apart]
 
 
 def why_none(study: Study) -> str:
-    """Why `errors_against` found nothing."""
+    """Why `errors_against` is empty."""
     if len(study.arms) < 2:
         return "There is one arm and no trajectory of the real crash, so nothing to hold it against."
     return "No case touched in the reference arm and another, so arms are not held against each other."
 
 
 def apart(first: Ran, second: Ran) -> Apart | None:
-    """Displacement of the second run from the first over the 3 s before contact; None where one never touched.
+    """Displacement of the second run from the first over the 3 s before contact; None without contact in one.
 
-    The far end, 3 s before contact (or as early as both run), is the final one.
+    The final displacement is that 3 s before contact, or at the earliest common instant.
     """
     tracks = [_before_contact(ran) for ran in (first, second)]
     if tracks[0] is None or tracks[1] is None:

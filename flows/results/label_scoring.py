@@ -1,6 +1,6 @@
-"""`sgcad score`: the runs of one config against what is true of their cases, field by field.
+"""`sgcad score`: the runs of one config compared with the truth of their cases, field by field.
 
-Reads run folders, label files (docs/metrics.md) and prints a table. Trusts no figure that a run reports about itself.
+Reads run folders and label files (docs/metrics.md). Uses no figure that a run reports about itself.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from sgcad_core.metrics.labels.observed_crash import Crash
 
 
 class Scored(NamedTuple):
-    """Marks by field and case, and how far two readings of the labels agree (empty with one reading)."""
+    """Marks by field and case, and the agreement of two readings of the labels (empty with one reading)."""
 
     marks: dict[str, dict[str, list[float]]]
     agreement: list[Agreement]
@@ -94,9 +94,9 @@ def _files(folder: Path | None, only: str) -> Iterator[tuple[str, dict[str, Any]
         try:
             raw = json.loads(file.read_text(encoding="utf-8"))
         except (OSError, ValueError) as fault:
-            raise BadInput(f"{file}: cannot be read ({fault}); mend it or take it out") from fault
+            raise BadInput(f"{file}: cannot be read ({fault}); correct or remove it") from fault
         if not isinstance(raw, dict):
-            raise BadInput(f"{file}: {type(raw).__name__} instead of a JSON object; mend it or take it out")
+            raise BadInput(f"{file}: {type(raw).__name__} instead of a JSON object; correct or remove it")
         yield file.stem, raw
 
 
@@ -110,7 +110,7 @@ def _result(folder: Path) -> dict[str, Any]:
 
 
 def _crash(folder: Path) -> Crash | None:
-    """What a generated case left; None if nothing, or nothing readable."""
+    """The crash of a generated case; None if missing or unreadable."""
     result = _result(folder)
     try:
         if result.get("status") != "generated":

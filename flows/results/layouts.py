@@ -1,4 +1,4 @@
-"""Which tables there are: the published layouts turned so that arms are rows, each with its reading in the header."""
+"""The tables: layouts of the publication with arms as rows, each with its reading in the header."""
 
 from __future__ import annotations
 

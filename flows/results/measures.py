@@ -1,6 +1,6 @@
-"""What a table can show: each measure with its name, unit, direction and where a case's value is found.
+"""Measures of tables: name, unit, direction and key in a case's values.
 
-A case's values are one flat mapping (`values_of`); a value that does not exist for a case is absent, and n says so.
+A case's values are one flat mapping (`values_of`); values that do not exist for a case are absent and not in n.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Measure(NamedTuple):
 
     @property
     def factor(self) -> float:
-        """What a fraction is multiplied with for print."""
+        """Factor from a fraction to the printed value."""
         return 100.0 if self.unit == "%" else 1.0
 
 
@@ -161,7 +161,7 @@ _CONFLICT = {
 
 
 def values_of(ran: Ran, label: Mapping[str, Any] | None) -> dict[str, float]:
-    """Everything that is measured of a finished case, fractions and SI units."""
+    """All values of a finished case, as fractions and in SI units."""
     found = dict(_generation(ran))
     found |= dict(_people(ran.result.get("person") or {}))
     if label is not None:
@@ -205,7 +205,7 @@ def _people(said: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
 
 
 def _truth(marks: Mapping[str, float], generated: bool) -> dict[str, float]:
-    """The comparison under the names of tables: `lanes_error`, `lanes_wrong`, and the latter of generated cases."""
+    """The comparison under the names of measures: `lanes_error`, `lanes_wrong`, and `made_lanes_wrong` if generated."""
     found = {k: v for k, v in marks.items() if not k.startswith(NETWORK_FIELDS)}
     for field, short in SHORT.items():
         if field in marks:

@@ -1,7 +1,7 @@
-"""A study as its folder tells it: study.json, and what every finished case of every arm came to.
+"""A study read from its folder: study.json and the finished cases of every arm.
 
-A folder of ordinary runs without study.json (`sgcad evaluate --out`) reads as a study too: its configs are the arms.
-Reads files only; starts nothing, and what is unfinished is simply not there.
+A folder of runs without study.json (`sgcad evaluate --out`) counts as a study whose arms are its configs. Unfinished
+cases are left out.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class Ran:
 
 @dataclass(frozen=True)
 class Study:
-    """A study and what of it is done. `labels` are the ground truth's, by case; empty where there is none."""
+    """A study and its finished cases. `labels` are the ground truth by case; empty without truth."""
 
     folder: Path
     name: str
@@ -85,7 +85,7 @@ class Study:
 
     @cached_property
     def ran(self) -> Mapping[str, Mapping[str, Ran]]:
-        """arm -> case -> what it came to, of the finished cases, in the study's order."""
+        """arm -> case -> finished case, in the study's order."""
         return {arm.name: {ran.case: ran for ran in self._finished(arm.name)} for arm in self.arms}
 
     def arm(self, name: str) -> Arm:
@@ -112,7 +112,7 @@ def find_study(given: Path, out: Path = Path("runs")) -> Path:
             return folder
     known = sorted(f.parent.name for f in (out / "studies").glob(f"*/{STUDY}"))
     there = f"studies in {out / 'studies'}: {', '.join(known)}" if known else f"there is none in {out / 'studies'}"
-    raise ConfigError(f"{given}: no study and no folder of runs; {there}; `sgcad study` makes one (--out says where)")
+    raise ConfigError(f"{given}: no study and no folder of runs; {there}; `sgcad study` makes one in --out")
 
 
 def load_study(folder: Path, truth: Path | None = None, only: str = "") -> Study:
@@ -142,14 +142,18 @@ def _about(folder: Path) -> dict[str, Any]:
         about = json.loads(file.read_text(encoding="utf-8"))
         missing = {"study", "title", "arms", "cases"} - set(about)
     except (OSError, ValueError, TypeError) as fault:
-        raise ConfigError(f"{file}: cannot be read ({fault}); run `sgcad study` again, it writes it anew") from fault
+        raise ConfigError(
+            f"{file}: cannot be read ({fault}); run `sgcad study` again, which writes the file"
+        ) from fault
     if missing:
-        raise ConfigError(f"{file}: {', '.join(sorted(missing))} missing; run `sgcad study` again, it writes it anew")
+        raise ConfigError(
+            f"{file}: {', '.join(sorted(missing))} missing; run `sgcad study` again, which writes the file"
+        )
     return dict(about)
 
 
 def _runs(folder: Path) -> dict[str, Any]:
-    """What study.json would say of a folder of ordinary runs."""
+    """Content like study.json's for a folder of runs."""
     found = defaultdict(list)
     for file in sorted(folder.glob("*/*/result.json")):
         found[file.parent.parent.name].append(file.parent.name)
@@ -170,13 +174,13 @@ def _labels(truth: Path, cases: Sequence[str]) -> Iterator[tuple[str, Mapping[st
             continue
         label = _json(file)
         if "network" not in label:
-            raise ConfigError(f"{file}: no label (a JSON object with `network`); mend it or give another --truth")
+            raise ConfigError(f"{file}: no label (a JSON object with `network`); correct it or give another --truth")
         yield case, label
 
 
 # ------------------------------------------------------------------ one case
 def made_of(folder: Path, result: Mapping[str, Any]) -> Made | None:
-    """What a generated case left behind, to hold against its truth; None if nothing, or nothing readable."""
+    """A generated case's roads and motion, to compare with its truth; None if missing or unreadable."""
     try:
         if result.get("status") != "generated":
             return None

@@ -1,4 +1,4 @@
-"""Refusal precision and recall: of what was refused, how much should have been, and the other way round."""
+"""Refusal precision and recall over robustness levels."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NOTE = (
 
 
 def systems(study: Study) -> Iterator[tuple[str, list[Arm]]]:
-    """Arms that differ in nothing but their level, under a name; those at one level alone are left out."""
+    """Arms that differ only in their level, by system; systems with one level are left out."""
     found = defaultdict(list)
     for arm in study.arms:
         if arm.level:

@@ -1,7 +1,6 @@
-"""Tables of a study: arms against measures, each figure with n, interval, corrected p and the published value.
+"""Tables of a study: arms by measures, each figure with n, interval, corrected p and the published value.
 
-Ours and the published figures stand in separate fields of a cell and are never mixed. Knows values by case; no file,
-no print.
+Measured and published figures are in separate fields of a cell.
 """
 
 from __future__ import annotations
@@ -67,7 +66,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Tables:
-    """All tables of a study, with the values that they and the figures stand on."""
+    """All tables of a study, with the values that tables and figures are made of."""
 
     study: Study
     values: Values
@@ -76,7 +75,7 @@ class Tables:
 
 
 def tables_of(study: Study) -> Tables:
-    """Every table that the study has something to show for; what is left out is told in the remarks."""
+    """All tables with a value; the remarks say which are left out."""
     values = study_values(study)
     made = [_table(study, values, layout) for layout in LAYOUTS]
     tables = tuple(t for t in [*made, _refusals(study, values)] if t is not None)
@@ -84,7 +83,7 @@ def tables_of(study: Study) -> Tables:
 
 
 def reference_of(study: Study) -> str | None:
-    """The arm that others are compared with: the one named, else the first; None of a single arm."""
+    """The arm that others are compared with: the named one, else the first; None with a single arm."""
     return (study.reference or study.arms[0].name) if len(study.arms) > 1 else None
 
 

@@ -1,4 +1,4 @@
-"""The published figures (published.yaml): rows by name, a value by measure, each with the table it stands in."""
+"""The published figures (published.yaml): rows by name, values by measure, each with the number of its table."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class PublishedRow:
 
 @dataclass(frozen=True)
 class Publication:
-    """Everything transcribed, and where it comes from."""
+    """All transcribed figures with their source."""
 
     source: str
     note: str

@@ -1,8 +1,8 @@
-"""A study begun before, found again by its name alone: which file, which cases, which overrides it was given.
+"""The file, cases and overrides of a study started before, read from study.json by the study's name.
 
-    again.before(Path("alpha"), Path("runs"))      # what runs/studies/alpha/study.json remembers
+    resume.before(Path("alpha"), Path("runs"))      # from runs/studies/alpha/study.json
 
-What a new command says goes before what is remembered. Reads study.json only.
+Arguments of the new command override them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from sgcad_core.errors import ConfigError
 
 @dataclass(frozen=True)
 class Before:
-    """What a study was given when it was begun; empty where none was."""
+    """The arguments with which a study was started; empty if it is new."""
 
     file: Path
     cases: tuple[Path, ...] = ()
@@ -27,7 +27,7 @@ class Before:
 
 
 def before(asked: Path, out: Path) -> Before:
-    """What is remembered of a study, named by its file or its name. Raises ConfigError: its cases are gone."""
+    """The arguments with which a study, given by file or name, was started."""
     document = folder_of(safe_id(asked.stem), out) / DOCUMENT
     try:
         about = json.loads(document.read_text(encoding="utf-8"))
@@ -43,9 +43,9 @@ def before(asked: Path, out: Path) -> Before:
 
 
 def cases_of(known: Before, named: tuple[Path, ...]) -> tuple[Path, ...]:
-    """The folders named now, else those remembered. Raises ConfigError where a remembered one is gone."""
+    """The folders named now, else the former ones. Raises ConfigError where a former one is gone."""
     if named:
         return named
     if gone := [str(folder) for folder in known.cases if not folder.exists()]:
-        raise ConfigError(f"the study was begun with {', '.join(gone)}, which is gone: name the folder with --cases")
+        raise ConfigError(f"the study was started with {', '.join(gone)}, which is gone: name the folder with --cases")
     return known.cases

@@ -1,8 +1,8 @@
-"""A study cut into shards: laid out on a share, worked on by whichever host takes one, watched, brought home.
+"""A study cut into shards: laid out on shared storage, each run by the host that takes it.
 
-All arms of a case stay in one shard, so that the stages they share are computed once. A shard knows its jobs
-by their digests: a host whose package, prompts or plugins differ refuses instead of mixing results. Knows no
-Prefect: `flows/deploy/shards.py` makes flow runs of it.
+All arms of a case stay in one shard, so that the stages they share are computed once. A shard knows its jobs by their
+digests: a host whose package, prompts or plugins differ refuses instead of mixing results. `flows/deploy/shards.py`
+makes flow runs of shards.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ PLAN = "plan.json"
 JOBS_A_SHARD = 100
 """A flow run costs a process and Prefect's import, about 8 s: at 0.5 s a case that is 16 % of a shard of 100."""
 SHELF = ".stages"
-"""Where a host keeps the stages that arms share; its own, since a case's arms meet in one shard."""
+"""Folder of shared stages, local to a host, since all arms of a case are in one shard."""
 MIN_SHARDS = 8
-"""As many at least where there are cases enough: four for each of two hosts, so that neither waits long at the end."""
+"""Minimum number of shards: four for each of two hosts, so that neither waits long at the end."""
 
 
 @dataclass(frozen=True)
 class Work:
-    """One job by name: what a shard's list says of it."""
+    """One job in a shard's list."""
 
     arm: str
     case: str
@@ -72,15 +72,15 @@ def cut(jobs: Sequence[Job], shards: int | None = None) -> list[list[Work]]:
 def lay_out(
     share: Share, study: str, jobs: Sequence[Job], shards: int | None = None, laying: str = ""
 ) -> list[list[Work]]:
-    """Write plan and reports to the share and cut the work. A share that holds another study is refused.
+    """Write plan and reports to the share and cut the jobs into shards. Refuses a share that holds another study.
 
-    `laying` names this plan: runs of an earlier one, whose shards were others, leave when they see it. Laid out
-    again (resumed, or with other arms), finished jobs keep their marks; failed ones are tried again.
+    `laying` names this plan: runs of an earlier plan stop when they read it. In a repeated layout (resumed, or with
+    other arms) finished jobs keep their marks; failed ones are tried again.
     """
     there = share.json(PLAN)
     if there is not None and there["study"] != study:
         raise ConfigError(
-            f"{share.address} holds the study {there['study']!r}, not {study!r}: give each its own folder"
+            f"{share.address} holds the study {there['study']!r}, not {study!r}: give each study its own folder"
         )
     for name in share.names("failed/"):
         share.remove(name)
@@ -107,7 +107,7 @@ def _give_reports(share: Share, jobs: Sequence[Job]) -> None:
 # ------------------------------------------------------------------ on a worker's host
 @dataclass(frozen=True)
 class Tally:
-    """What became of a shard: done here, found done, done here too late (another's result stands), failed."""
+    """Counts of a shard's jobs: done, found done, done but too late (another result is valid), failed."""
 
     done: int = 0
     found: int = 0
@@ -117,7 +117,7 @@ class Tally:
 
 @dataclass(frozen=True)
 class Shard:
-    """One shard on the host that took it; `scratch` is a folder on the host's own disk."""
+    """One shard on its host; `scratch` is a folder on the host's disk."""
 
     share: Share
     number: int
@@ -129,10 +129,10 @@ class Shard:
         """Raises LeaseLost if the study was laid out anew since this run was submitted."""
         plan = self.share.json(PLAN) or {}
         if self.laying and plan.get("laying") != self.laying:
-            raise LeaseLost("the study was started again and laid out anew; this run's shard is no more")
+            raise LeaseLost("the study was started again with other shards; this run's shard no longer exists")
 
     def jobs(self) -> tuple[list[Job], int]:
-        """What is left to do, checked against the plan, and how much was found done."""
+        """The jobs that are left, checked against the plan, and the number found done."""
         plan = self.share.json(PLAN)
         if plan is None or self.number >= len(plan["shards"]):
             raise ConfigError(f"{self.share.address}: no shard {self.number} in {PLAN}; was the study laid out here?")
@@ -144,7 +144,7 @@ class Shard:
         return [self._job(work, configs[work.arm], sources[work.case]) for work in left], len(wanted) - len(left)
 
     def _report(self, case: str) -> Case:
-        """The report, brought to this host."""
+        """A report, copied to this host."""
         prefix = f"cases/{case}"
         place = self.scratch / prefix
         for name in self.share.names(prefix):
@@ -177,16 +177,16 @@ class Shard:
 
 
 def _config(raw: dict[str, Any], arm: str) -> Config:
-    """An arm's configuration on a worker's host: tracked is at home, where results meet."""
+    """An arm's configuration on a worker's host, without its tracker: results are tracked where they are collected."""
     return build({**raw, "tracker": "none"}, arm, f"arm {arm}")
 
 
 Run = Callable[[Sequence[Job], Crew, Callable[[Job, Ending, str], None]], object]
-"""How a shard's jobs are run: `flows.batch.batch_flow.submit_and_follow` inside a flow run."""
+"""Function that runs a shard's jobs: `flows.batch.batch_flow.submit_and_follow` inside a flow run."""
 
 
 def work_on(shard: Shard, run: Run, jobs: int | None = None, beat_s: float | None = None) -> Tally:
-    """Do what is left of a shard and hand in each case as it ends. Raises ConfigError, LeaseLost, Unreachable."""
+    """Run the jobs left in a shard and hand in each case as it ends. Raises ConfigError, LeaseLost, Unreachable."""
     lease = Lease(shard.share, shard.number, shard.run, beat_s or BEAT_S)
     counts = dict.fromkeys(("done", "found", "doubled", "failed"), 0)
     shard.check()
@@ -208,7 +208,7 @@ def work_on(shard: Shard, run: Run, jobs: int | None = None, beat_s: float | Non
 
 
 def _batch(plan: Sequence[Job], scratch: Path, jobs: int | None) -> Batch:
-    """What is left of a shard as a batch: with a model `jobs` cases at a time, without one in processes."""
+    """The jobs left in a shard as a batch: with a model `jobs` cases at a time, without one in processes."""
     configs = tuple({job.config.name: job.config for job in plan}.values())
     asks = any(config.backbone for config in configs)
     return Batch(

@@ -1,7 +1,7 @@
-"""The place where the hosts of a study meet: one folder behind an fsspec address (file, s3, gs, sftp, memory ...).
+"""Shared storage of a study's hosts: one folder behind an fsspec address (file, s3, gs, sftp, memory ...).
 
     plan.json                              arms, cases, jobs and shards, written once
-    cases/<id>[/<file>]                    the reports, so that a host needs nothing but this address
+    cases/<id>[/<file>]                    the reports, so that a host needs only this address
     results/<arm>/<case>/<run>.tar.gz      one finished case, one object, written before its mark
     done/<arm>/<case>.<digest>.json        the mark: which object is the result, its SHA-256; written last
     failed/...                             marks of failed cases: ended for now, tried again by the next study
@@ -35,7 +35,7 @@ _T = TypeVar("_T")
 
 
 class Unreachable(MissingTool):
-    """The storage does not answer; what is finished stays finished."""
+    """The storage does not answer; finished cases stay finished."""
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ class Share:
 
     # -------------------------------------------------------------- results
     def leave(self, folder: Path, job: tuple[str, str, str], status: str, run: str) -> bool:
-        """Upload a finished case's folder, then mark it; False if another's mark stood already.
+        """Upload a finished case's folder, then mark it; False if it was marked by another run.
 
         `job` is (arm, case, digest); `run` names the attempt and becomes part of the object's name.
         """
@@ -163,7 +163,7 @@ class Share:
 
 
 def packed(folder: Path) -> bytes:
-    """A case folder as one archive, without what only its host needs to know (which tracker has it)."""
+    """A case folder as one archive, without the note of its trackers."""
     packet = io.BytesIO()
     with tarfile.open(fileobj=packet, mode="w:gz", compresslevel=1) as archive:
         for path in sorted(folder.iterdir()):

@@ -27,16 +27,16 @@ from flows.deploy.storage import HIDDEN, Place
 
 CLAIMS = f"{HIDDEN}/claims"
 ALONE_FROM = 3
-"""From this number on a report is worked on by itself: of several that died together one may be what kills."""
+"""Number of a claim from which its report is run alone, since it may be the cause of the deaths."""
 MAX_TAKES = 6
-"""A report whose worker died so often is put apart as failed."""
+"""Number of dead workers after which a report counts as failed."""
 SAME_S = 2.0
 """A process is identified by number and start time; the start time is exact to within clock adjustments."""
 
 
 @dataclass(frozen=True)
 class Claim:
-    """One worker's right to one report; `number` counts the workers that have tried."""
+    """A worker's claim on a report; `number` counts the workers that have tried."""
 
     digest: str
     number: int
@@ -44,13 +44,13 @@ class Claim:
 
     @property
     def name(self) -> str:
-        """The file that stands for it."""
+        """The claim's file."""
         return f"{CLAIMS}/{self.digest}.{self.number}"
 
 
 @dataclass
 class Claims:
-    """Claims at one place; `lease_s` of silence and a claim is free."""
+    """Claims at one address; a claim that is silent for `lease_s` is free."""
 
     place: Place
     lease_s: float = 120.0
@@ -100,19 +100,19 @@ class Claims:
                 self.place.remove(f"{CLAIMS}/{claim.digest}.{number}")
 
     def drop_dead(self, done: Callable[[str], bool]) -> None:
-        """Remove claims of dead workers on reports that are done: one was killed before it could let go."""
+        """Remove claims of dead workers on finished reports."""
         for name in self.place.names(CLAIMS):
             digest = name.rpartition(".")[0]
             if digest not in self._held and done(digest) and not self._alive(f"{CLAIMS}/{name}"):
                 self.place.remove(f"{CLAIMS}/{name}")
 
     def forsake(self, claim: Claim) -> None:
-        """Stop beating without letting go: the report is another's by now."""
+        """Stop renewing a claim whose report another worker has taken over."""
         with self._guard:
             self._held.pop(claim.digest, None)
 
     def beat(self) -> None:
-        """Say of every claim held that its worker lives."""
+        """Renew every claim held."""
         for claim in list(self._held.values()):
             with self._guard:
                 if claim.digest in self._held:
@@ -120,7 +120,7 @@ class Claims:
 
     @contextmanager
     def beating(self) -> Iterator[None]:
-        """A thread that beats three times a lease while the block lasts."""
+        """Renew claims from a thread, three times per lease, while the block lasts."""
         over = threading.Event()
         thread = threading.Thread(target=self._keep_beating, args=(over,), daemon=True, name="claims")
         thread.start()
@@ -135,7 +135,7 @@ class Claims:
             try:
                 self.beat()
             except OSError:
-                continue  # the store may be back at the next beat; if not, the lease runs out as it should
+                continue  # the store may answer at the next beat; if not, the lease ends
 
 
 def _holder() -> bytes:
@@ -145,14 +145,14 @@ def _holder() -> bytes:
 
 
 def _is_dead(holder: bytes) -> bool:
-    """Whether it is known that the holder has ended: only of processes that this one could see."""
+    """Whether the holder is known to have ended; only for processes of this machine."""
     try:
         about: dict[str, Any] = json.loads(holder)
         if not about["machine"] or about["machine"] != machine():
             return False
         return abs(_born(int(about["pid"])) - float(about["born"])) > SAME_S
     except (ValueError, KeyError, TypeError):
-        return False  # half written, or none of ours: the lease decides
+        return False  # half written, or foreign: the lease decides
 
 
 def _born(pid: int) -> float:
@@ -166,7 +166,7 @@ def _born(pid: int) -> float:
 
 @cache
 def machine() -> str:
-    """The same for processes that see each other: boot and process namespace; empty where neither is told."""
+    """Identity of the machine: boot and process namespace; empty where the system does not give them."""
     try:
         boot = Path("/proc/sys/kernel/random/boot_id").read_text().strip()
         return f"{boot}-{Path('/proc/self/ns/pid').stat().st_ino}"

@@ -128,7 +128,7 @@
       try {
         const answer = await fetch(`/version/${page.dataset.key}`);
         if (page === main() && !desk.busy) {
-          if (answer.status === 404) { $("changed").hidden = false; $("changed").firstChild.textContent = "This case was removed from the folder, or is being written anew. "; }
+          if (answer.status === 404) { $("changed").hidden = false; $("changed").firstChild.textContent = "This case was removed from the folder, or is being written again. "; }
           else if (answer.ok) $("changed").hidden = (await answer.json()).version === page.dataset.version;
         }
       } catch { $("changed").hidden = false; $("changed").firstChild.textContent = "The desk does not answer; was it stopped? "; }

@@ -1,4 +1,4 @@
-"""What fields and values are called on the desk's pages."""
+"""Labels of fields and values on the desk's pages."""
 
 from __future__ import annotations
 

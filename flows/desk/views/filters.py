@@ -1,7 +1,4 @@
-"""Which rows a person asked for, in which order: filters, sorting, counts beside the filters, pages.
-
-Pure functions on rows; an `Asked` is the page's query string and back.
-"""
+"""Filters, sorting, counts and pages of the list's rows; `Asked` is the page's query string and back."""
 
 from __future__ import annotations
 
@@ -22,7 +19,7 @@ FLAGS: Mapping[str, tuple[str, Callable[[Row], bool]]] = {
     "mended": ("mended by a person", lambda row: row.mended > 0),
     "unmended": ("not mended yet", lambda row: row.mended == 0),
 }
-"""What a case may have: its words and its test."""
+"""Conditions of the list: label and test."""
 FACETS: Mapping[str, str] = {
     "trust": "Trust", "status": "Status", "kind": "Kind of crash", "place": "Place", "config": "Config",
 }  # fmt: skip
@@ -37,7 +34,7 @@ SORTS: Mapping[str, tuple[str, Callable[[Row], Any]]] = {
     "doubts": ("Doubts", lambda r: (-r.doubts - r.disagreeing, r.case)),
     "config": ("Config", lambda r: (r.config, r.case)),
 }
-"""Columns that sort, each in the order in which a person would first want it."""
+"""Columns that sort, each with its first order."""
 
 
 def _low(row: Row) -> float:
@@ -46,7 +43,7 @@ def _low(row: Row) -> float:
 
 @dataclass(frozen=True)
 class Asked:
-    """What a person asked the list for; empty means all. `below`: most confidence, of [0, 1]."""
+    """The list's filters and order; empty means all. `below`: maximum confidence, in [0, 1]."""
 
     text: str = ""
     trust: str = ""
@@ -62,7 +59,7 @@ class Asked:
 
     @staticmethod
     def of(query: Mapping[str, str]) -> Asked:
-        """From a query string; what is not understood counts as not asked."""
+        """Read a query string; unknown values are ignored."""
         texts = {name: str(query.get(name, ""))[:200] for name in ("text", *FACETS)}
         flag, sort = query.get("flag", ""), query.get("sort", "trust")
         return Asked(
@@ -125,7 +122,7 @@ def _told(row: Row) -> str:
 
 
 def counts(rows: Sequence[Row], asked: Asked) -> dict[str, list[tuple[str, int]]]:
-    """Of each facet its values with the number of cases that choosing it would leave, in the order to show."""
+    """For each facet its values, in order, with the number of cases that selecting one would leave."""
     tallies: dict[str, Counter[str]] = {name: Counter() for name in FACETS}
     for row in rows:
         unlike = _unlike(row, asked)

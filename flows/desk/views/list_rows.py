@@ -1,7 +1,4 @@
-"""One line of the list: what a finished case came to, from its result.json alone.
-
-Pure functions on the content of result.json, written by any version; knows no file and no page.
-"""
+"""One line of the list of cases, from the content of a result.json of any version."""
 
 from __future__ import annotations
 
@@ -13,8 +10,8 @@ from sgcad_core.kinds import JUNCTIONS
 from sgcad_core.result import as_declared
 
 Trust = Literal["broken", "lacking", "doubtful", "refused", "whole"]
-"""What to do with a case: nothing usable came of it; something that is told is missing in it; it holds, with doubts;
-the report carries no scenario; nothing is known to be wrong."""
+"""State of a case: no usable scenario; something told is missing; complete, with doubts; the report carries no
+scenario; no known fault."""
 TRUSTS: tuple[Trust, ...] = ("broken", "lacking", "doubtful", "refused", "whole")
 """In the order in which a person should look."""
 UNREADABLE = "unreadable"
@@ -46,7 +43,7 @@ class Row:
     disagreeing: int = 0
     """Fields of which two readers (text, drawing, coded fields, model) say different things."""
     accounted: bool = False
-    """Whether the result says what of the report is in the scenario; older versions' do not."""
+    """Whether the result has an account; results of older versions have none."""
     mended: int = 0
     """Facts that a person gave."""
     contact: str = ""

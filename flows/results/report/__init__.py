@@ -1,1 +1,1 @@
-"""Figures of a study: plots, scenes, the case gallery."""
+"""The page of a study and its figures: plots, scenes, drives, the case gallery."""

@@ -1,4 +1,4 @@
-"""One square of a figure of cases: bare axes, words in it and under it, the road, a road user. Knows matplotlib."""
+"""One square of a figure of cases: bare axes, text, the road, a road user."""
 
 from __future__ import annotations
 

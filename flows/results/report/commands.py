@@ -1,6 +1,6 @@
-"""`sgcad table` and `sgcad report`: from a study's folder to tables, figures and a page. Answers go to stdout.
+"""`sgcad table`, `sgcad report` and `sgcad score`: tables, figures and a page of a study. Answers go to stdout.
 
-Everything heavy is imported inside, so that --help is quick.
+Heavy modules are imported inside, so that --help is quick.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ TEXT_WIDTH = 120
 PAGE = "report.html"
 
 Given = Annotated[Path, typer.Argument(help="A study's folder or its name, or a folder of runs.")]
-Out = Annotated[Path, typer.Option("--out", "-o", help="Folder of the results, where a study's name is looked for.")]
+Out = Annotated[Path, typer.Option("--out", "-o", help="Folder of the results, in which a study is found by name.")]
 Truth = Annotated[Path | None, typer.Option("--truth", help="Folder of <case>.json; default: the study's own.")]
-Only = Annotated[str, typer.Option("--only", help="Cases whose name begins so.")]
+Only = Annotated[str, typer.Option("--only", help="Only cases whose name begins with this.")]
 
 
 def table(
@@ -30,10 +30,14 @@ def table(
     out: Out = Path("runs"),
     truth: Truth = None,
     only: Only = "",
-    csv: Annotated[Path | None, typer.Option("--csv", help="Write one figure a line here, in full precision.")] = None,
-    latex: Annotated[Path | None, typer.Option("--latex", help="Write the tables for LaTeX (booktabs) here.")] = None,
+    csv: Annotated[
+        Path | None, typer.Option("--csv", help="Write one figure per line to this file, in full precision.")
+    ] = None,
+    latex: Annotated[
+        Path | None, typer.Option("--latex", help="Write the tables for LaTeX (booktabs) to this file.")
+    ] = None,
 ) -> None:
-    """A study's tables: every arm with n, 95 % intervals and paired tests; published figures in their own columns."""
+    """Print a study's tables: every arm with n, 95 % intervals and paired tests, published figures apart."""
     from rich.console import Console
 
     from flows.results import writing
@@ -53,12 +57,14 @@ def report(
     out: Out = Path("runs"),
     truth: Truth = None,
     only: Only = "",
-    html: Annotated[Path | None, typer.Option("--html", help="The page; default: report.html in the study.")] = None,
+    html: Annotated[
+        Path | None, typer.Option("--html", help="Path of the page; default: report.html in the study's folder.")
+    ] = None,
     figures: Annotated[
         Path | None, typer.Option("--figures", help="Write the figures as PNG into this folder.")
     ] = None,
 ) -> None:
-    """One HTML file with a study's tables, figures and cases; it needs no server and fetches nothing."""
+    """Write one HTML file with a study's tables, figures and cases; it needs no server and no network."""
     from flows.results.report.drive_frames import drive_frames
     from flows.results.report.page import page
     from flows.results.report.plots import plots_of
@@ -96,19 +102,23 @@ def _write(file: Path, content: bytes) -> None:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_bytes(content)
     except OSError as fault:
-        raise ConfigError(f"{file}: cannot be written ({fault.strerror}); choose another place") from fault
+        raise ConfigError(f"{file}: cannot be written ({fault.strerror}); choose another path") from fault
 
 
 def score(
     runs: Annotated[Path, typer.Argument(help="The folder of one config's cases, such as runs/template.")],
     truth: Annotated[Path | None, typer.Argument(help="A folder of truth files, <case>.json.")] = None,
-    labels: Annotated[Path | None, typer.Option("--labels", help="A folder of labels of the whole course.")] = None,
-    second: Annotated[Path | None, typer.Option("--second", help="Another reading of these labels.")] = None,
-    only: Annotated[str, typer.Option("--only", help="Cases whose name begins so.")] = "",
-    each: Annotated[bool, typer.Option("--cases", help="Name the cases that have a field wrong.")] = False,
+    labels: Annotated[
+        Path | None, typer.Option("--labels", help="A folder of labels of the whole crash course.")
+    ] = None,
+    second: Annotated[
+        Path | None, typer.Option("--second", help="A second reading of the same labels; only fields that agree count.")
+    ] = None,
+    only: Annotated[str, typer.Option("--only", help="Only cases whose name begins with this.")] = "",
+    each: Annotated[bool, typer.Option("--cases", help="List the cases with a wrong field.")] = False,
     file: Annotated[Path | None, typer.Option("--json", help="Write all marks to a file.")] = None,
 ) -> None:
-    """Hold runs against what is true of their cases: roads, motion, contacts, evasion, rest, later impacts."""
+    """Compare runs with the truth of their cases: roads, motion, contacts, evasion, rest, later impacts."""
     from flows.results import label_scoring  # only where it is asked for: --help is to be quick
 
     scored = label_scoring.score(runs, truth, labels, second, only)

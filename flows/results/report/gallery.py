@@ -1,6 +1,6 @@
 """The case gallery's data: every case with its report, a small diagram, and each arm's network, paths and verdicts.
 
-Plain values, small: decimetres as whole numbers around the first contact, a point every half second. Knows no markup.
+Small plain values: decimeters as whole numbers around the first contact, a point every half second.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ NEAR_M = 90.0
 """Road farther from the middle than this is not sent; the picture shows 45 m to each side at most."""
 NARRATIVE_CHARS = 6_000
 LACKING_SHOWN = 6
-"""Things told that lack, named in a tile; the player names all."""
+"""Number of things that lack named in a tile; the player names all."""
 VERDICTS = (
     ("intersections_wrong", "intersections", 0.0), ("lanes_wrong", "lanes", 0.0), ("connectivity_wrong", "parts", 0.0),
     ("lanes_total", "lanes total", 1.0), ("legs", "legs", 1.0), ("vehicle_count", "vehicles", 1.0),
     ("initial_heading", "headings", 1.0), ("maneuver", "maneuvers", 1.0), ("collision_pair", "contact pair", 1.0),
     ("collision_areas", "sides", 1.0),
 )  # fmt: skip
-"""Value, what the gallery calls it, and which value is right."""
+"""Key of a value, its label in the gallery, and the right value."""
 
 
 def gallery(tables: Tables, page: Path) -> dict[str, Any]:
@@ -160,7 +160,7 @@ def _points(element: Element) -> Floats:
 
 
 def _near(points: Floats, middle: Floats) -> list[int]:
-    """The shape, or nothing where it lies far off (a long straight road is near if its middle part is)."""
+    """The shape, or nothing if it is farther off than NEAR_M."""
     low, high = points.min(axis=0), points.max(axis=0)
     if len(points) < 2 or (np.maximum(low - middle, middle - high) > NEAR_M).any():
         return []

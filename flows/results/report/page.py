@@ -1,7 +1,7 @@
-"""One HTML file a study: tables, figures and the case gallery, with nothing to fetch and no server.
+"""One HTML file per study: tables, figures and the case gallery; it needs no network and no server.
 
-The page's parts lie beside this module (report.html, report.css, report.js). Cases stand in a JSON block and reach the
-page as text, never as markup, so a narrative cannot become code; what stands in markup is escaped here.
+Put together from report.html, report.css and report.js. Cases are in a JSON block and reach the page as text, never as
+markup, so a narrative cannot become code; text in markup is escaped here.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ SLOT = re.compile(r"%TITLE%|%LEAD%|%TABLES%|%FIGURES%|%DATA%|/\*STYLE\*/|/\*SCRI
 
 
 def page(tables: Tables, plots: Sequence[Plot], place: Path) -> str:
-    """The whole page as text. `place`: where it will lie, for its links to players."""
+    """The whole page as text. `place`: its path, for links to players."""
     data = json.dumps(gallery(tables, place), ensure_ascii=False, separators=(",", ":"))
     parts = {
         "%TITLE%": escape(tables.study.title),
@@ -66,7 +66,7 @@ def _lead(tables: Tables) -> str:
 
 
 def _accounts(tables: Tables) -> str:
-    """Arm by arm in how many scenarios nothing told is lacking: the first thing on the page."""
+    """Per arm the number of scenarios that lack nothing told: the first lines of the page."""
     told = []
     for arm in tables.study.arms:
         known = [a for ran in tables.study.ran.get(arm.name, {}).values() if (a := counts_of(ran.result))]

@@ -1,6 +1,6 @@
-"""Figures of numbers: sensitivity to a varied key, risk distribution, displacement errors. Knows matplotlib.
+"""Figures of numbers: sensitivity to a varied key, risk distribution, displacement errors.
 
-A figure that the study has nothing to show for says why instead. Ours and published values are drawn apart.
+A figure without data says why. Measured and published values are drawn apart.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 DPI = 130
 MOST_ARMS = 12
 DASHES = ("-", (0, (5, 2)), (0, (2, 2)), (0, (6, 2, 1, 2)))
-"""Arms that agree lie on one another: each shows through the next."""
+"""Line styles: arms that agree stay visible over one another."""
 LEVELS = ("critical", "high", "moderate_low")
 LEVEL_COLORS = {"critical": "#b3202c", "high": "#e08a3c", "moderate_low": "#b9c4c9"}
 SENSITIVE: tuple[Measure, ...] = (*NETWORK_WRONG, *(m for m in GENERATION if m.name in ("generated", "as_declared")))
@@ -125,7 +125,7 @@ def _lines(arms: Iterable[Arm], key: str) -> dict[str, dict[float, list[str]]]:
 
 
 def pooled(tables: Tables, arms: Sequence[str], measure: Measure) -> list[float]:
-    """One value a case: the mean over arms that differ in nothing but the seed."""
+    """One value per case: the mean over arms that differ only in the seed."""
     found: dict[str, list[float]] = defaultdict(list)
     for arm in arms:
         for case, values in tables.values[arm].items():
@@ -199,7 +199,7 @@ def _stack(axes: Axes, rows: list[tuple[str, list[float], bool]]) -> None:
 
 # ------------------------------------------------------------------ displacement
 def displacement(tables: Tables) -> Plot:
-    """How hard motion is to predict, by arm; and how far it lies from the reference arm's."""
+    """Prediction error of the motion by arm, and its displacement from the reference arm's."""
     title = "Displacement errors"
     predicted = {a.label: _values(tables, a.name, "x_fde") for a in tables.study.arms[:MOST_ARMS]}
     if not any(predicted.values()):

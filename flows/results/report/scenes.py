@@ -1,4 +1,4 @@
-"""Figures of cases: networks side by side, and frames of one crash across arms. Knows matplotlib and run folders."""
+"""Figures of cases: networks side by side, and frames of one crash in every arm."""
 
 from __future__ import annotations
 

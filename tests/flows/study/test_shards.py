@@ -176,7 +176,7 @@ def test_a_report_that_is_one_file_arrives_as_one_file(config_file, share, tmp_p
 
 def test_a_share_belongs_to_one_study(plan, share):
     lay_out(share, "s", plan)
-    with pytest.raises(ConfigError, match="give each its own folder"):
+    with pytest.raises(ConfigError, match="give each study its own folder"):
         lay_out(share, "t", plan)
 
 
