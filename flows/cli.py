@@ -29,7 +29,7 @@ from sgcad_core.errors import SgcadError
 
 if TYPE_CHECKING:
     from flows.batch.plan_batch import Batch
-    from flows.batch.progress_bar import Watch
+    from flows.batch.progress_bar import BatchProgress
 
 Result = TypeVar("Result")
 
@@ -131,7 +131,7 @@ def _batch(
     raise typer.Exit(_carry_out(made, lambda watch: run_batch.evaluate(made, watch.ended, on_turn=watch.turn))[0])
 
 
-def _carry_out(made: Batch, work: Callable[[Watch], Result]) -> tuple[int, Result]:
+def _carry_out(made: Batch, work: Callable[[BatchProgress], Result]) -> tuple[int, Result]:
     """Work under a progress bar, then print the summary; the exit code and the result of the work."""
     from flows.batch import config_folder, progress_bar, summary
 
@@ -141,7 +141,7 @@ def _carry_out(made: Batch, work: Callable[[Watch], Result]) -> tuple[int, Resul
     tally = summary.Tally(made)
     stopped = _heed_interrupts()
     try:
-        with progress_bar.watching(tally) as watch:
+        with progress_bar.batch_progress(tally) as watch:
             result = work(watch)
     except BaseException as fault:
         # A library may answer the interrupt with an error of its own (pydantic does, in the midst of serializing).
@@ -173,7 +173,7 @@ def study(
     from flows.deploy import hosts_preflight
     from flows.study import plan, resume, run_study, spec
 
-    known = resume.before(file, out)
+    known = resume.former_arguments(file, out)
     given = resume.cases_of(known, tuple(cases or ())), truth or known.truth, overrides or known.overrides
     study = spec.load_study(known.file)
     made = plan.plan(study, out, cases=given[0], truth=given[1], overrides=given[2], jobs=jobs, fresh=fresh)

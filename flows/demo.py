@@ -29,7 +29,7 @@ def main(arguments: Sequence[str] = ()) -> int:
     _say(f"Reads {len(batch.cases)} crash reports in {_shown(REPORTS)} and writes a road, a scenario and its replay")
     _say(f"for each, with configs/{config}. The first start makes two databases: half a minute.")
     tally = summary.Tally(batch)
-    with progress_bar.watching(tally) as watch:
+    with progress_bar.batch_progress(tally) as watch:
         run_batch.evaluate(batch, watch.ended, on_turn=watch.turn)
     for line in [*met(tally), *ending(batch)]:
         _say(line)

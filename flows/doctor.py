@@ -33,7 +33,7 @@ CHILDREN = ("prefect.server.api.server:create_app", "flows.server", "sgcad_core.
 """Modules that run only as children of another command."""
 
 
-class Trouble(Exception):
+class CheckFailed(Exception):
     """A check failed; the message says what to do."""
 
 
@@ -49,7 +49,7 @@ def examine(out: Path) -> bool:
             continue
         try:
             said, mark = test(out), "[green]ok[/]   "
-        except (Trouble, SgcadError, OSError, subprocess.SubprocessError) as fault:
+        except (CheckFailed, SgcadError, OSError, subprocess.SubprocessError) as fault:
             said, mark, fine = str(fault), "[red]wrong[/]", False
             wrong.add(name)
         seconds = time.perf_counter() - started
@@ -59,7 +59,7 @@ def examine(out: Path) -> bool:
 
 def _python(out: Path) -> str:
     if not (3, 11) <= sys.version_info[:2] < (3, 14):
-        raise Trouble(f"Python {sys.version.split()[0]}; 3.11 to 3.13 are supported")
+        raise CheckFailed(f"Python {sys.version.split()[0]}; 3.11 to 3.13 are supported")
     return sys.version.split()[0]
 
 
@@ -71,14 +71,14 @@ def _version(name: str) -> str:
     try:
         return version(name)
     except PackageNotFoundError as fault:
-        raise Trouble(f"{name} is not installed: pip install -e .") from fault
+        raise CheckFailed(f"{name} is not installed: pip install -e .") from fault
 
 
 def _netconvert(out: Path) -> str:
     command, environment = [str(settings.netconvert()), "--version"], settings.subprocess_environment()
     said = subprocess.run(command, capture_output=True, text=True, timeout=30, env=environment)  # noqa: S603 - ours
     if said.returncode:
-        raise Trouble(f"{settings.netconvert()} does not run: {said.stderr.strip()[:200]}")
+        raise CheckFailed(f"{settings.netconvert()} does not run: {said.stderr.strip()[:200]}")
     return said.stdout.splitlines()[0]
 
 
@@ -103,7 +103,7 @@ def _writable(out: Path) -> str:
     if not there:
         out.rmdir()
     if free < LOW_MB:
-        raise Trouble(f"{free:,} MB free at {out.resolve()}; {LOW_MB:,} are advised for a batch of 1,000 cases")
+        raise CheckFailed(f"{free:,} MB free at {out.resolve()}; {LOW_MB:,} are advised for a batch of 1,000 cases")
     return f"{out.resolve()} can be written, {free:,} MB free"
 
 
@@ -115,7 +115,9 @@ def _home(out: Path) -> str:
         with tempfile.NamedTemporaryFile(prefix=".sgcad-", dir=home):
             pass
     except OSError as fault:
-        raise Trouble(f"{home} cannot be written ({fault.strerror}): set PREFECT_HOME to a folder that can") from fault
+        raise CheckFailed(
+            f"{home} cannot be written ({fault.strerror}): set PREFECT_HOME to a folder that can"
+        ) from fault
     return f"{home} can be written"
 
 
@@ -127,7 +129,7 @@ def _flow(out: Path) -> str:
         try:
             stale = _run_tiny_flow()
         except (RuntimeError, httpx.HTTPError) as fault:
-            raise Trouble(f"no Prefect flow can run: {fault}; look at PREFECT_HOME and PREFECT_API_URL") from fault
+            raise CheckFailed(f"no Prefect flow can run: {fault}; look at PREFECT_HOME and PREFECT_API_URL") from fault
     said = f"a Prefect flow runs (server: {settings.prefect_url() or 'one for each command'})"
     if stale:
         remedy = f"prefect flow-run delete {stale[0]} ..."
@@ -164,7 +166,7 @@ def _services(out: Path) -> str:
     said += health.server_lines(api)
     line = "; ".join(text for _, text in said)
     if there and not all(fine for fine, _ in said):
-        raise Trouble(f"{line}; `make down`, then `make up`")
+        raise CheckFailed(f"{line}; `make down`, then `make up`")
     return line
 
 
@@ -191,7 +193,7 @@ def _leftovers(out: Path) -> str:
     lying = f"{' and '.join(found)} of killed or running batches; the next batch clears them" if found else ""
     if processes:
         ended = f"processes of killed commands still run; end them: kill {' '.join(processes)}"
-        raise Trouble(f"{ended}; {lying}" if lying else ended)
+        raise CheckFailed(f"{ended}; {lying}" if lying else ended)
     if lying:
         return lying
     return "no orphaned process, no half-written case, no temporary folder"

@@ -19,9 +19,9 @@ from prefect.runtime import flow_run
 from prefect.settings import PREFECT_API_URL, PREFECT_FLOWS_HEARTBEAT_FREQUENCY, temporary_settings
 
 from flows.batch import track_cases
-from flows.batch.plan_batch import Batch, Crew, Job
-from flows.batch.prefect_case_end import Showing, showing, shows_every_step
-from flows.batch.prefect_case_task import Board, case_task, hush_prefect, plain, threads
+from flows.batch.plan_batch import Batch, Job, JobRunner
+from flows.batch.prefect_case_end import CaseReporter, case_reporter, shows_every_step
+from flows.batch.prefect_case_task import TaskBoard, case_task, plain, silence_prefect, threads
 from flows.batch.track_cases import OnEnding
 from sgcad_core import settings
 
@@ -31,20 +31,20 @@ DRAIN_S, STOP_S = 60.0, 2.0
 """Maximum wait for the last states to reach the server, at a normal end and after a fault or Ctrl-C."""
 
 
-def run_flow(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding, lasting: bool = False) -> None:
+def run_flow(batch: Batch, plan: Sequence[Job], runner: JobRunner, on_ending: OnEnding, lasting: bool = False) -> None:
     """Run a batch as one flow run. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
 
-    With a `lasting` server the crew starts here, so that no case starts before the flow run that shows it.
+    With a `lasting` server the job runner starts here, so that no case starts before the flow run that shows it.
 
     Returns when the server has every state: states are sent as events in the background, and a server of the command
     ends with it. Prefect's heartbeat is off: its thread costs every flow a second.
     """
-    hush_prefect()
+    silence_prefect()
     with temporary_settings({PREFECT_FLOWS_HEARTBEAT_FREQUENCY: None} | _server_named()):
         run: list[tuple[str, int]] = []
         patience = STOP_S  # after a fault the server may be gone
         try:
-            flow_of = _flow(batch, plan, crew, on_ending, run, lasting)
+            flow_of = _flow(batch, plan, runner, on_ending, run, lasting)
             flow_of([c.name for c in batch.configs], len(batch.cases), str(batch.out))
             patience = DRAIN_S
         finally:
@@ -80,18 +80,21 @@ def _settle(identity: str, task_runs: int, patience: float) -> None:
 
 
 def _flow(
-    batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding, run: list[tuple[str, int]], lasting: bool
+    batch: Batch, plan: Sequence[Job], runner: JobRunner, on_ending: OnEnding, run: list[tuple[str, int]], lasting: bool
 ) -> Any:
     """The flow of one batch; its parameters are for display. Its id and number of task runs are added to `run`."""
-    runner = threads(batch.jobs)
+    task_runner = threads(batch.jobs)
 
     @flow(
-        name=batch.flow, flow_run_name=plain(batch.title or run_name(batch)), task_runner=runner, persist_result=False
+        name=batch.flow,
+        flow_run_name=plain(batch.title or run_name(batch)),
+        task_runner=task_runner,
+        persist_result=False,
     )
     def evaluate(configs: list[str], cases: int, out: str) -> None:
         if lasting:
-            crew.begin(plan)
-        task_runs = submit_and_follow(plan, crew, on_ending, lasting)
+            runner.begin(plan)
+        task_runs = submit_and_follow(plan, runner, on_ending, lasting)
         run.append((str(flow_run.id), task_runs))
 
     return evaluate
@@ -99,10 +102,10 @@ def _flow(
 
 def run_inside_flow(batch: Batch, on_ending: OnEnding, plan: Sequence[Job] | None = None) -> None:
     """Run a batch, or some of its jobs, inside the flow run of a deployment."""
-    plan, crew = batch.plan() if plan is None else plan, Crew(batch)
-    crew.begin(plan)
-    submit_and_follow(plan, crew, on_ending)
-    crew.close()
+    plan, runner = batch.plan() if plan is None else plan, JobRunner(batch)
+    runner.begin(plan)
+    submit_and_follow(plan, runner, on_ending)
+    runner.close()
 
 
 def counts_inside_flow(batch: Batch, plan: Sequence[Job] | None = None) -> dict[str, int]:
@@ -112,26 +115,26 @@ def counts_inside_flow(batch: Batch, plan: Sequence[Job] | None = None) -> dict[
     return dict(counts)
 
 
-def submit_and_follow(plan: Sequence[Job], crew: Crew, on_ending: OnEnding, lasting: bool = True) -> int:
+def submit_and_follow(plan: Sequence[Job], runner: JobRunner, on_ending: OnEnding, lasting: bool = True) -> int:
     """Submit every job, track and show it as it ends; the number of task runs. Call it inside a flow run."""
-    board = Board({job.name: job for job in plan}, crew, every=shows_every_step())
+    board = TaskBoard({job.name: job for job in plan}, runner, every=shows_every_step())
     task = case_task(board)
     submitted = {task.submit(job.name): job for job in plan}
     try:
-        with track_cases.following(plan), showing(lasting) as shown:
+        with track_cases.tracked_batch(plan), case_reporter(lasting) as shown:
             _follow(board, submitted, on_ending, shown)
     except BaseException:
-        crew.stop()
+        runner.stop()
         raise
     return len(plan) + board.steps
 
 
-def _follow(board: Board, submitted: dict[Any, Job], on_ending: OnEnding, shown: Showing) -> None:
+def _follow(board: TaskBoard, submitted: dict[Any, Job], on_ending: OnEnding, shown: CaseReporter) -> None:
     for done in as_completed(list(submitted)):
         if board.fatal:
             raise board.fatal
         job = submitted[done]
         if job.name not in board.endings:
             done.result()  # the task itself crashed: Prefect's own fault is raised
-        ending, graph = board.take(job.name)
-        on_ending(job, ending, shown.case(job, ending, graph))
+        ending, step_runs = board.take(job.name)
+        on_ending(job, ending, shown.case(job, ending, step_runs))

@@ -21,7 +21,7 @@ from flows.batch import config_folder
 from flows.batch.worker import Order
 from flows.case import run_case
 from flows.case.run_case import Ending
-from flows.case.step_log import OnStep, unheard
+from flows.case.step_log import OnStep, ignore_step
 from flows.case_files import case_folder, find_cases, stage_cache
 from flows.case_files.case_folder import CaseFolder
 from flows.case_files.find_cases import Case
@@ -149,13 +149,13 @@ OnTurn = Callable[[Job, str], None]
 
 
 @dataclass
-class Crew:
+class JobRunner:
     """Runs jobs: those without a model at once in the background, those with a model when they are waited for."""
 
     batch: Batch
     on_turn: OnTurn | None = None
     done: frozenset[str] = frozenset()
-    """Jobs finished by an earlier crew of this command: not repeated by `fresh`."""
+    """Jobs finished by an earlier runner of this command: not repeated by `fresh`."""
     stopping: threading.Event = field(default_factory=threading.Event)
     _begun: dict[str, Future[Ending]] = field(default_factory=dict)
     """Jobs in worker processes whose ending was not asked for yet; an ending is handed out once."""
@@ -190,7 +190,7 @@ class Crew:
         result = None if anew else job.folder.finished(job.digest)
         return Ending(result, reused=True) if result is not None else None
 
-    def finish(self, job: Job, on_attempt: OnAttempt, tell: OnStep = unheard) -> Ending:
+    def finish(self, job: Job, on_attempt: OnAttempt, tell: OnStep = ignore_step) -> Ending:
         """Wait for a job, or run it now, reporting every step. Raises MissingTool, ConfigError."""
         if job.name in self._begun:
             return self._begun.pop(job.name).result()
@@ -214,7 +214,7 @@ class Crew:
             ending = self._answered(worker, order)
         except SimulationFailed as death:
             self._check()
-            ending = run_case.leave_failed(job.config, job.case, self.batch.out, job.digest, str(death))
+            ending = run_case.write_failed(job.config, job.case, self.batch.out, job.digest, str(death))
         finally:
             self._idle.put(worker)
         return ending

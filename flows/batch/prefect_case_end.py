@@ -21,7 +21,7 @@ from prefect.settings import PREFECT_API_URL, PREFECT_UI_URL
 
 from flows.batch import track_cases
 from flows.batch.plan_batch import Job
-from flows.batch.prefect_tasks import Graph
+from flows.batch.prefect_tasks import StepRuns
 from flows.case import case_in_words
 from flows.case.run_case import Ending
 from flows.case.step_log import Step, waits_for
@@ -37,7 +37,7 @@ ARTIFACTS_S = 20.0
 
 
 @dataclass
-class Showing:
+class CaseReporter:
     """Tracks and shows the cases of one batch as they end. `lasting`: the server outlives the batch."""
 
     lasting: bool
@@ -45,27 +45,27 @@ class Showing:
     _served: dict[Path, Served] = field(default_factory=dict)
     _silent: bool = False
 
-    def case(self, job: Job, ending: Ending, graph: Graph | None) -> str:
+    def case(self, job: Job, ending: Ending, step_runs: StepRuns | None) -> str:
         """Track a case and show its result; why it could not be tracked, or "". Raises ConfigError (`track_safely`)."""
-        if graph is None or ending.reused:
+        if step_runs is None or ending.reused:
             untracked = track_cases.track_safely(job, ending)
             self._link_to_tracker(job)  # a case of an interrupted batch is logged now
             return untracked
-        self._link(job, graph)
+        self._link(job, step_runs)
         began = time.time()
         untracked = track_cases.track_safely(job, ending)
         after = waits_for("track", [step.name for step in ending.steps])
         tracked = Step("track", began, time.time(), after=after)
-        graph.tell(replace(tracked, state="Untracked", kind="failed", message=untracked) if untracked else tracked)
+        step_runs.tell(replace(tracked, state="Untracked", kind="failed", message=untracked) if untracked else tracked)
         self._link_to_tracker(job)
-        self.artifact(job.folder.path, job.name, ending.result, graph)
+        self.artifact(job.folder.path, job.name, ending.result, step_runs)
         return untracked
 
-    def _link(self, job: Job, graph: Graph) -> None:
+    def _link(self, job: Job, step_runs: StepRuns) -> None:
         """Keep the links of the case in Prefect, which its tracker shows too."""
         base = _pages() if self.lasting else ""
-        found = {"prefect": f"{base}/runs/flow-run/{graph.flow_run}"}
-        case_links.keep(job.folder.path, found | {"prefect_case": f"{base}/runs/task-run/{graph.task_run}"})
+        found = {"prefect": f"{base}/runs/flow-run/{step_runs.flow_run}"}
+        case_links.keep(job.folder.path, found | {"prefect_case": f"{base}/runs/task-run/{step_runs.task_run}"})
 
     @staticmethod
     def _link_to_tracker(job: Job) -> None:
@@ -73,7 +73,7 @@ class Showing:
         if page := job.config.tracker.page(job.config.name, job.case.id):
             case_links.keep(job.folder.path, {"mlflow": page})
 
-    def artifact(self, folder: Path, name: str, result: Mapping[str, Any], graph: Graph) -> None:
+    def artifact(self, folder: Path, name: str, result: Mapping[str, Any], step_runs: StepRuns) -> None:
         """Send a case's artifact to Prefect; `name` is the job's."""
         if self._silent:
             return
@@ -84,7 +84,7 @@ class Showing:
             "key": artifact_key(name), "type": "markdown",
             "description": f"{name}: {result['status']}",
             "data": markdown(folder, result, self._served[out]),
-            "flow_run_id": graph.flow_run, "task_run_id": graph.task_run,
+            "flow_run_id": step_runs.flow_run, "task_run_id": step_runs.task_run,
         }  # fmt: skip
         try:
             self._client.request("POST", "/artifacts/", json=body, timeout=ARTIFACTS_S)
@@ -110,10 +110,10 @@ def shows_every_step() -> bool:
 
 
 @contextmanager
-def showing(lasting: bool) -> Iterator[Showing]:
+def case_reporter(lasting: bool) -> Iterator[CaseReporter]:
     """The object that shows the cases of a batch while the block lasts."""
     with get_client(sync_client=True) as client:
-        yield Showing(lasting, client)
+        yield CaseReporter(lasting, client)
 
 
 def _pages() -> str:

@@ -18,8 +18,8 @@ from prefect.futures import PrefectFuture
 from prefect.states import Cancelled, Completed, Failed
 from prefect.task_runners import TaskRunner, ThreadPoolTaskRunner
 
-from flows.batch.plan_batch import Crew, Job
-from flows.batch.prefect_tasks import Graph
+from flows.batch.plan_batch import Job, JobRunner
+from flows.batch.prefect_tasks import StepRuns
 from flows.case.run_case import Ending
 from sgcad_core.asking.refine import run_at_once
 from sgcad_core.errors import SgcadError
@@ -34,13 +34,13 @@ def threads(count: int) -> TaskRunner[PrefectFuture[Any]]:
 
 
 @dataclass
-class Board:
+class TaskBoard:
     """Endings that tasks leave, the runs that show their steps, and the fault that ends the batch, by job name."""
 
     jobs: dict[str, Job]
-    crew: Crew
+    runner: JobRunner
     endings: dict[str, Ending] = field(default_factory=dict)
-    graphs: dict[str, Graph] = field(default_factory=dict)
+    step_runs: dict[str, StepRuns] = field(default_factory=dict)
     every: bool = True
     """Whether every step of a case is shown."""
     fatal: SgcadError | None = None
@@ -48,11 +48,11 @@ class Board:
     steps: int = 0
     """Number of task runs of steps shown for the cases taken, tracking included."""
 
-    def take(self, job: str) -> tuple[Ending, Graph]:
+    def take(self, job: str) -> tuple[Ending, StepRuns]:
         """The ending of a job; handed out once, since a long batch would keep 80 kB of memory per case."""
-        ending, graph = self.endings.pop(job), self.graphs.pop(job)
-        self.steps += 0 if ending.reused else graph.every + sum(map(graph.shows, ending.steps))
-        return ending, graph
+        ending, step_runs = self.endings.pop(job), self.step_runs.pop(job)
+        self.steps += 0 if ending.reused else step_runs.every + sum(map(step_runs.shows, ending.steps))
+        return ending, step_runs
 
 
 def plain(name: str) -> str:
@@ -60,33 +60,33 @@ def plain(name: str) -> str:
     return name.replace("{", "(").replace("}", ")")
 
 
-def case_task(board: Board) -> Any:
+def case_task(board: TaskBoard) -> Any:
     """The task that finishes one job of the board, given its name."""
 
     @task(name="case", task_run_name="{job}", cache_policy=NO_CACHE, persist_result=False)
     def case(job: str) -> State[Any]:
         try:
-            graph = board.graphs[job] = _graph(board.every)
-            elsewhere = board.crew.began(board.jobs[job])
-            ending = board.crew.finish(board.jobs[job], run_at_once, graph.tell)
+            step_runs = board.step_runs[job] = _graph(board.every)
+            elsewhere = board.runner.began(board.jobs[job])
+            ending = board.runner.finish(board.jobs[job], run_at_once, step_runs.tell)
         except SgcadError as fault:
             board.fatal = fault
             return Failed(message=str(fault))
         if elsewhere:
             for step in ending.steps:
-                graph.tell(step)
+                step_runs.tell(step)
         board.endings[job] = ending
         return _state(ending)
 
     return case
 
 
-def _graph(every: bool) -> Graph:
+def _graph(every: bool) -> StepRuns:
     """The step runs of the current task run."""
     context = TaskRunContext.get()
     if context is None:
         raise RuntimeError("a case is finished in a task run of Prefect's")
-    return Graph(str(context.task_run.flow_run_id), str(context.task_run.id), every)
+    return StepRuns(str(context.task_run.flow_run_id), str(context.task_run.id), every)
 
 
 def _state(ending: Ending) -> State[Any]:
@@ -104,7 +104,7 @@ def _state(ending: Ending) -> State[Any]:
     return Completed(name=status.capitalize(), message=reason)
 
 
-def hush_prefect() -> None:
+def silence_prefect() -> None:
     """Silence Prefect's own log lines, which break the progress bar; the command reports every ending."""
     for name in ("prefect", "prefect.task_runs", "prefect.flow_runs", "EventsWorker", "APILogWorker"):
         logging.getLogger(name).setLevel(logging.CRITICAL)

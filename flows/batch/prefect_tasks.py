@@ -21,7 +21,7 @@ TYPES: Mapping[Kind, str] = {"completed": "COMPLETED", "cancelled": "CANCELLED",
 
 
 @dataclass(frozen=True)
-class Graph:
+class StepRuns:
     """Shows a case's steps as task runs inside the case's task run."""
 
     flow_run: str

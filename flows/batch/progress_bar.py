@@ -28,7 +28,7 @@ SHARE = {"road": 0.1, "scenario": 0.55}
 
 
 @dataclass
-class Watch:
+class BatchProgress:
     """Counts attempts and endings from any thread, and moves the bar or prints lines."""
 
     tally: Tally
@@ -90,14 +90,14 @@ def _lacking(ending: Ending) -> str:
 
 
 @contextmanager
-def watching(tally: Tally) -> Iterator[Watch]:
+def batch_progress(tally: Tally) -> Iterator[BatchProgress]:
     """A watch over a batch while the block lasts."""
     total = len(tally.batch.configs) * len(tally.batch.cases)
     console = Console(stderr=True, emoji=False, highlight=False)
     if not console.is_terminal:
-        yield Watch(tally, total, console=console)
+        yield BatchProgress(tally, total, console=console)
         return
     count = TextColumn("{task.fields[done]}/{task.total:.0f}")
     columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), count, TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as bar:
-        yield Watch(tally, total, bar, bar.add_task("starting", total=total, done=0))
+        yield BatchProgress(tally, total, bar, bar.add_task("starting", total=total, done=0))

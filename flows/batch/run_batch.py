@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from flows.batch import track_cases
-from flows.batch.plan_batch import Batch, Crew, Job, OnTurn
+from flows.batch.plan_batch import Batch, Job, JobRunner, OnTurn
 from flows.batch.track_cases import OnEnding
 from flows.case.run_case import Ending
 from flows.server import Server, ServerLost, prefect_server
@@ -40,17 +40,17 @@ def evaluate(
     settings.quiet_libraries()
     started, spent = time.perf_counter(), time.process_time()
     plan = batch.plan() if plan is None else plan
-    crew = Crew(batch, on_turn)
-    if (done := _all_done(plan, crew)) is not None:
+    runner = JobRunner(batch, on_turn)
+    if (done := _all_done(plan, runner)) is not None:
         for job, ending in done:
             on_ending(job, ending, "")
         return Cost(0, time.perf_counter() - started, time.process_time() - spent)
-    fresh = sum(crew.reusable(job) is None for job in plan)
-    server_s = _run(batch, plan, crew, on_ending)
+    fresh = sum(runner.reusable(job) is None for job in plan)
+    server_s = _run(batch, plan, runner, on_ending)
     return Cost(fresh, time.perf_counter() - started, time.process_time() - spent, server_s)
 
 
-def _run(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> float | None:
+def _run(batch: Batch, plan: Sequence[Job], runner: JobRunner, on_ending: OnEnding) -> float | None:
     """Run the jobs that are left; processor seconds of the server.
 
     A lost server of the command is replaced once: cases do not need it, it only shows them.
@@ -63,27 +63,27 @@ def _run(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> 
             on_ending(job, ending, untracked)
 
     try:
-        return _under_a_server(batch, plan, crew, tell)
+        return _under_a_server(batch, plan, runner, tell)
     except ServerLost as lost:
         logging.getLogger(__name__).warning("%s; another one is started", lost.how)
-    return _under_a_server(batch, plan, Crew(batch, crew.on_turn, frozenset(told)), tell)
+    return _under_a_server(batch, plan, JobRunner(batch, runner.on_turn, frozenset(told)), tell)
 
 
-def _under_a_server(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> float | None:
+def _under_a_server(batch: Batch, plan: Sequence[Job], runner: JobRunner, on_ending: OnEnding) -> float | None:
     try:
         with prefect_server() as server:
             if server:  # it takes seconds to start
-                crew.begin(plan)
+                runner.begin(plan)
             from flows.batch.batch_flow import run_flow
 
             if server:
                 server.wait()
-            run_flow(batch, plan, crew, on_ending, lasting=server is None)
+            run_flow(batch, plan, runner, on_ending, lasting=server is None)
             server_s = _processor_s(server) if server else None
     except BaseException:
-        crew.stop()
+        runner.stop()
         raise
-    crew.close()
+    runner.close()
     return server_s
 
 
@@ -97,11 +97,11 @@ def _processor_s(server: Server) -> float | None:
     return float(times.user + times.system)
 
 
-def _all_done(plan: Sequence[Job], crew: Crew) -> list[tuple[Job, Ending]] | None:
+def _all_done(plan: Sequence[Job], runner: JobRunner) -> list[tuple[Job, Ending]] | None:
     """Endings of a batch whose cases are all finished and tracked; None if a job is left."""
     done = []
     for job in plan:
-        ending = crew.reusable(job)
+        ending = runner.reusable(job)
         if ending is None or not track_cases.tracked(job):
             return None
         done.append((job, ending))

@@ -1,7 +1,7 @@
 """Finished cases logged to their trackers, each once, also after interrupted batches.
 
-`following` encloses a batch: it tells every tracker what is about to run (`Arm`) and when it has ended. A mark in the
-config's folder exists in between, so that the next batch ends one that was killed after its last case.
+`tracked_batch` encloses a batch: it tells every tracker what is about to run (`Arm`) and when it has ended. A mark in
+the config's folder exists in between, so that the next batch ends one that was killed after its last case.
 """
 
 from __future__ import annotations
@@ -55,12 +55,12 @@ def track_safely(job: Job, ending: Ending) -> str:
         raise
     except Exception as fault:  # noqa: BLE001 - the case is safe on disk: a locked database must not end the batch
         _failed[mark] = _failed.get(mark, 0) + 1
-        return plainly(fault)
+        return fault_in_words(fault)
     _failed.pop(mark, None)
     return ""
 
 
-def plainly(fault: Exception) -> str:
+def fault_in_words(fault: Exception) -> str:
     """A tracker's fault in one line with its remedy; of a database's fault its message without the statement."""
     for sign, plain in PLAIN.items():
         if sign in str(fault):
@@ -102,7 +102,7 @@ def _open(job: Job) -> Path:
 
 # ------------------------------------------------------------------ before the first case and after the last
 @contextmanager
-def following(plan: Sequence[Job]) -> Iterator[None]:
+def tracked_batch(plan: Sequence[Job]) -> Iterator[None]:
     """Tell the trackers what is about to run, and how it ended. Raises ConfigError for a tracker that can never work.
 
     The tracker of a config whose cases are all tracked is not called.
@@ -118,7 +118,7 @@ def following(plan: Sequence[Job]) -> Iterator[None]:
         yield
         finished = True
     except Exception as broken:
-        fault = plainly(broken)
+        fault = fault_in_words(broken)
         raise
     finally:
         for job, arm in arms:
@@ -137,7 +137,7 @@ def _safely(job: Job, tell: Callable[[], None]) -> bool:
     except Exception as fault:  # noqa: BLE001 - the cases are safe on disk: a locked database must not end the batch
         if not _failed.get(job.config.tracker.model_dump_json()):  # else the cases report it already
             told = logging.getLogger(__name__)
-            told.warning("%s: not tracked: %s; then run the same command again", job.config.name, plainly(fault))
+            told.warning("%s: not tracked: %s; then run the same command again", job.config.name, fault_in_words(fault))
         return False
     return True
 

@@ -82,7 +82,7 @@ class CaseRun:
     trace: str = ""
     edits: tuple[Edit, ...] | None = None
     """A person's facts; None: those beside the report."""
-    kept: Mapping[str, person_facts.Kept] = field(default_factory=dict)
+    kept: Mapping[str, person_facts.KeptAnswers] = field(default_factory=dict)
     """By stage, a model's former answer to this case; the model is not asked again."""
     as_read: dict[str, Any] | None = None
     """The specs before the first edit, where they are known."""
@@ -109,7 +109,7 @@ class CaseRun:
         """Read the report and write both stages; None where one of them was not written."""
         source = self.case.source
         read = self._single("read", lambda: self.config.report_reader.read(source), source.name)
-        self.report = report = person_facts.informed(self._seconded(read), source, self.edits)
+        self.report = report = person_facts.with_person_facts(self._seconded(read), source, self.edits)
         both = self._both(report)
         if both is None and any(fact.basis == "model" for fact in report.reading.facts):
             note = "the second opinion led to no scenario: the rules' reading stands"
@@ -203,7 +203,7 @@ class CaseRun:
     ) -> Refinement:
         return Refinement(
             stage=stage,
-            write=person_facts.laid_over(write, report, net, writer),
+            write=person_facts.with_edits(write, report, net, writer),
             validators=heeding(self.config.validators_of(stage), report.edits),
             evidence_of=lambda generation: Evidence(report=report, network=net, generation=generation),
             ask=(self.kept[stage].ask if stage in self.kept else ask_of(self.config)) if writer.asks_model else None,
@@ -239,10 +239,12 @@ class CaseRun:
     def read_alone(self) -> dict[str, Any] | None:
         """The specs that the case would have without its edits; None where there are no edits."""
         if self.as_read is None and self.report and self.report.edits:
-            alone = CaseRun(self.config, self.case, run_at_once, edits=(), kept=person_facts.kept_in(self.outcomes))
+            unedited = CaseRun(
+                self.config, self.case, run_at_once, edits=(), kept=person_facts.kept_answers(self.outcomes)
+            )
             with suppress(SgcadError):
-                alone.written()
-            return person_facts.specs_of(alone.record())
+                unedited.written()
+            return person_facts.specs_of(unedited.record())
         return self.as_read
 
     def fail(self, fault: Exception) -> None:

@@ -43,7 +43,7 @@ SPECS = "specs.json"
 SOURCE = ".source"
 
 
-def informed(report: CrashReport, source: Path, edits: tuple[Edit, ...] | None = None) -> CrashReport:
+def with_person_facts(report: CrashReport, source: Path, edits: tuple[Edit, ...] | None = None) -> CrashReport:
     """A report with a person's edits: `edits`, else the facts.yaml beside it. Raises BadInput."""
     if edits is None:
         file = facts_file(source)
@@ -51,7 +51,7 @@ def informed(report: CrashReport, source: Path, edits: tuple[Edit, ...] | None =
     return report.model_copy(update={"edits": edits}) if edits else report
 
 
-def laid_over(
+def with_edits(
     write: Write, report: CrashReport, network: RoadNetwork | None, writer: RoadWriter | ScenarioWriter
 ) -> Write:
     """A writer's `write` with a report's edits applied to its artifacts; the same function without edits."""
@@ -135,7 +135,7 @@ def read_specs(folder: Path) -> Specs:
 
 # ------------------------------------------------------------------ what a model answered before
 @dataclass(frozen=True)
-class Kept:
+class KeptAnswers:
     """The attempts of a stage as a case's folder keeps them; `number` is the valid one."""
 
     attempts: tuple[Attempt, ...]
@@ -155,12 +155,12 @@ class Kept:
         return outcome.model_copy(update={"attempts": attempts, "kept": self.number if outcome.kept else 0})
 
 
-def kept_in(outcomes: Mapping[str, StageOutcome]) -> dict[str, Kept]:
+def kept_answers(outcomes: Mapping[str, StageOutcome]) -> dict[str, KeptAnswers]:
     """The attempts of stages that have just been written."""
-    return {stage: Kept(o.attempts, o.kept or len(o.attempts)) for stage, o in outcomes.items() if o.attempts}
+    return {stage: KeptAnswers(o.attempts, o.kept or len(o.attempts)) for stage, o in outcomes.items() if o.attempts}
 
 
-def kept_of(folder: Path, stage: str, number: int) -> Kept:
+def read_kept_answers(folder: Path, stage: str, number: int) -> KeptAnswers:
     """A stage's attempts as a case's folder keeps them; `number`: the valid one, 0: the last.
 
     Raises BadInput where the folder keeps no answer.
@@ -169,7 +169,7 @@ def kept_of(folder: Path, stage: str, number: int) -> Kept:
     attempts = tuple(_attempt(place) for place in places)
     if not attempts:
         raise BadInput(f"{folder}/attempts: no answer of the {stage} stage is kept: run the case again")
-    return Kept(attempts, number or len(attempts))
+    return KeptAnswers(attempts, number or len(attempts))
 
 
 def _attempt(place: Path) -> Attempt:

@@ -25,7 +25,7 @@ import yaml
 
 from flows.case import person_facts
 from flows.case.chain import CaseRun
-from flows.case.run_case import leave_run
+from flows.case.run_case import write_run
 from flows.case_files import find_cases
 from flows.case_files.case_folder import CONFIG, CaseFolder
 from flows.case_files.find_cases import Case
@@ -40,7 +40,7 @@ from sgcad_core.revision.applied import SOURCE
 from sgcad_core.revision.file import alone, merged, undone
 from sgcad_core.system.report_files import facts_file
 
-Given = Mapping[str, object]
+FieldValues = Mapping[str, object]
 """Field -> value, typed or as text; `AS_READ` takes a field's edits back."""
 
 
@@ -141,7 +141,13 @@ def stamp_of(edits: Sequence[Edit]) -> str:
 
 # ------------------------------------------------------------------ changing
 def revise(
-    folder: Path, edits: Given, *, who: str = "", why: str = "", seen: str | None = None, report: Path | None = None
+    folder: Path,
+    edits: FieldValues,
+    *,
+    who: str = "",
+    why: str = "",
+    seen: str | None = None,
+    report: Path | None = None,
 ) -> Revised:
     """Apply a person's facts to a finished case and write its result files again.
 
@@ -170,7 +176,7 @@ def undo(folder: Path, *, seen: str | None = None, report: Path | None = None) -
         return _written(case, before, undone(before), set(), started)
 
 
-def note(source: Path, edits: Given, *, who: str = "", why: str = "") -> tuple[Edit, ...]:
+def note(source: Path, edits: FieldValues, *, who: str = "", why: str = "") -> tuple[Edit, ...]:
     """Keep facts beside a report without running anything; the next run uses them. Raises WrongEdit, BadInput."""
     new = _edits(edits, who, why)
     with alone(source):
@@ -180,7 +186,7 @@ def note(source: Path, edits: Given, *, who: str = "", why: str = "") -> tuple[E
     return effective(after)
 
 
-def _edits(given: Given, who: str, why: str) -> tuple[Edit, ...]:
+def _edits(given: FieldValues, who: str, why: str) -> tuple[Edit, ...]:
     """Typed edits of one moment. Raises WrongEdit with every fault found."""
     faults: list[str] = []
     found: list[Edit] = []
@@ -225,7 +231,7 @@ def _written(case: Opened, before: tuple[Edit, ...], after: tuple[Edit, ...], ne
     write_edits(case.file, after, report_digest(case.source))
     try:
         digest = find_cases.digest_of(case.case, case.config)
-        result = leave_run(run, CaseFolder(case.folder.parent.parent, case.config.name, case.folder.name), digest)
+        result = write_run(run, CaseFolder(case.folder.parent.parent, case.config.name, case.folder.name), digest)
     except BaseException:
         write_edits(case.file, before, report_digest(case.source))
         raise
@@ -242,11 +248,11 @@ def _as_read(case: Opened, before: tuple[Edit, ...]) -> dict[str, Any] | None:
     return raw
 
 
-def _kept(case: Opened) -> dict[str, person_facts.Kept]:
+def _kept(case: Opened) -> dict[str, person_facts.KeptAnswers]:
     """The answers that a model gave, by stage. Raises BadInput where a stage has none yet."""
     asks = {"road": case.config.road_writer.asks_model, "scenario": case.config.scenario_writer.asks_model}
     asked = [stage for stage in STAGES if asks[stage]]
-    return {stage: person_facts.kept_of(case.folder, stage, case.specs.kept.get(stage, 0)) for stage in asked}
+    return {stage: person_facts.read_kept_answers(case.folder, stage, case.specs.kept.get(stage, 0)) for stage in asked}
 
 
 def _findings(run: CaseRun) -> list[Finding]:

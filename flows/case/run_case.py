@@ -9,7 +9,7 @@ from typing import Any
 
 from flows.case import person_facts
 from flows.case.chain import CaseRun
-from flows.case.step_log import OnStep, Step, Steps, unheard
+from flows.case.step_log import OnStep, Step, Steps, ignore_step
 from flows.case_files import case_folder
 from flows.case_files.find_cases import Case
 from flows.case_files.stage_cache import Sharing
@@ -49,22 +49,22 @@ def run_case(
     on_attempt: OnAttempt = run_at_once,
     *,
     sharing: Sharing | None = None,
-    tell: OnStep = unheard,
+    tell: OnStep = ignore_step,
 ) -> Ending:
     """Run one case and write its folder. Raises MissingTool, ConfigError (a folder that cannot be written)."""
     run = CaseRun(config, case, on_attempt, sharing, steps=Steps(tell))
     run.go()
-    result = leave_run(run, case_folder.CaseFolder(out, config.name, case.id), digest)
+    result = write_run(run, case_folder.CaseFolder(out, config.name, case.id), digest)
     return Ending(result, tuple(run.fresh), tuple(run.calls), steps=tuple(run.steps.done))
 
 
-def leave_failed(config: Config, case: Case, out: Path, digest: str, reason: str) -> Ending:
+def write_failed(config: Config, case: Case, out: Path, digest: str, reason: str) -> Ending:
     """Write the folder of a case whose process died, with the reason; the report is not read, it may be the cause."""
     run = CaseRun(config, case, run_at_once, failure=reason)
-    return Ending(leave_run(run, case_folder.CaseFolder(out, config.name, case.id), digest))
+    return Ending(write_run(run, case_folder.CaseFolder(out, config.name, case.id), digest))
 
 
-def leave_run(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict[str, Any]:
+def write_run(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict[str, Any]:
     """Write the folder of a case that has run; its result. Raises ConfigError where it cannot be written."""
     try:
         return _write(run, folder, digest)

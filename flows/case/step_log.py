@@ -51,7 +51,7 @@ OnStep = Callable[[Step], None]
 """Called when a step begins (`ended` is None) and when it has ended, from the case's own thread."""
 
 
-def unheard(step: Step) -> None:
+def ignore_step(step: Step) -> None:
     """Ignore the step."""
 
 
@@ -59,7 +59,7 @@ def unheard(step: Step) -> None:
 class Steps:
     """The steps of one case."""
 
-    tell: OnStep = unheard
+    tell: OnStep = ignore_step
     done: list[Step] = field(default_factory=list)
 
     @contextmanager

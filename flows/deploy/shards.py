@@ -34,9 +34,9 @@ from flows.batch.track_cases import OnEnding
 from flows.case.run_case import Ending
 from flows.study.plan import Plan
 from flows.study.shard_lease import BEAT_S
-from flows.study.shards import Shard, lay_out, work_of, work_on
-from flows.study.shared_storage import Mark, Share, Unreachable
-from flows.study.watch_shards import PATIENCE_S, START_S, Watch, follow
+from flows.study.shards import Shard, lay_out, run_shard, shard_job
+from flows.study.shared_storage import Mark, SharedFolder, Unreachable
+from flows.study.watch_shards import PATIENCE_S, START_S, ShardWatch, watch_until_done
 from flows.study.watch_shards import State as Standing
 from sgcad_core.errors import ConfigError
 
@@ -72,7 +72,9 @@ def shard_flow(
     """
     place = Path(scratch or tempfile.gettempdir()) / "sgcad-shards" / hashlib.sha256(address.encode()).hexdigest()[:12]
     place.mkdir(parents=True, exist_ok=True)
-    tally = work_on(Shard(Share(address), shard, str(flow_run.id), place, laying), submit_and_follow, jobs, beat_s)
+    tally = run_shard(
+        Shard(SharedFolder(address), shard, str(flow_run.id), place, laying), submit_and_follow, jobs, beat_s
+    )
     return Completed(message=", ".join(f"{count} {name}" for name, count in vars(tally).items()))
 
 
@@ -173,20 +175,20 @@ def on_hosts(study: str, jobs: Sequence[Job], hosts: Hosts, on_ending: OnEnding)
     Returns the shards submitted again, with reasons. Raises ConfigError, Unreachable (storage or server gone for ten
     minutes); the same command again resumes the study.
     """
-    with track_cases.following(jobs):
+    with track_cases.tracked_batch(jobs):
         left = list(_not_here(jobs, on_ending))
         return _away(study, left, hosts, on_ending) if left else []
 
 
 def _away(study: str, left: Sequence[Job], hosts: Hosts, on_ending: OnEnding) -> list[str]:
-    share = Share(hosts.address)
+    share = SharedFolder(hosts.address)
     laying = str(uuid.uuid4())
     shards = lay_out(share, study, left, hosts.shards, laying)
     parameters = {"address": hosts.address, "laying": laying, "beat_s": hosts.beat_s}
     parameters |= {"jobs": hosts.jobs} if hosts.jobs else {}
     pool = PrefectPool(study, parameters, hosts.deployment)
-    watch = Watch(share, pool, shards, _homecoming(share, left, on_ending), hosts.patience_s, hosts.start_s)
-    follow(watch, time.monotonic, lambda: time.sleep(POLL_S))
+    watch = ShardWatch(share, pool, shards, _homecoming(share, left, on_ending), hosts.patience_s, hosts.start_s)
+    watch_until_done(watch, time.monotonic, lambda: time.sleep(POLL_S))
     return watch.again
 
 
@@ -201,9 +203,9 @@ def _not_here(jobs: Sequence[Job], on_ending: OnEnding) -> Iterator[Job]:
             on_ending(job, ending, track_cases.track_safely(job, ending))
 
 
-def _homecoming(share: Share, jobs: Sequence[Job], on_ending: OnEnding) -> Callable[[Mark], None]:
+def _homecoming(share: SharedFolder, jobs: Sequence[Job], on_ending: OnEnding) -> Callable[[Mark], None]:
     """A function that copies a marked result into its folder, tracks it and reports it."""
-    by_work = {(work.arm, work.case, work.digest): job for job in jobs for work in (work_of(job),)}
+    by_work = {(work.arm, work.case, work.digest): job for job in jobs for work in (shard_job(job),)}
 
     def home(mark: Mark) -> None:
         job = by_work[mark.arm, mark.case, mark.digest]

@@ -11,7 +11,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from flows.desk import changes, pages
-from flows.desk.context import Desk, Gone
+from flows.desk.context import CaseGone, Desk
 from flows.desk.guard import Gate, Guard
 from flows.desk.index import Index
 from flows.desk.links import Links
@@ -24,7 +24,7 @@ def application(root: Path, gate: Gate | None = None, mlflow: str = "", prefect:
     app.state.desk = desk
     app.include_router(pages.router)
     app.include_router(changes.router)
-    app.add_exception_handler(Gone, _gone)
+    app.add_exception_handler(CaseGone, _gone)
     app.add_exception_handler(HTTPException, _http)
     app.add_middleware(Guard, gate=gate or Gate())
     return app

@@ -10,14 +10,14 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
 
 from flows.desk.context import Desk
-from flows.desk.mending import Changed, Done, Kind, Order, told
+from flows.desk.mending import CaseChanged, ChangeResult, Kind, Order, told
 from sgcad_core.errors import SgcadError, SimulationFailed, WrongEdit
 
 router = APIRouter()
 Plain = str | int | float | bool | list[str] | None
 
 
-class Asked(BaseModel):
+class ChangeRequest(BaseModel):
     """A change as a page requests it."""
 
     model_config = ConfigDict(extra="forbid")
@@ -50,13 +50,13 @@ async def _change(request: Request, key: str, kind: Kind) -> Response:
     """Answer 200 with findings by field, 409 if the case has changed, 422 with the reason of a refusal."""
     desk: Desk = request.app.state.desk
     try:
-        asked = Asked.model_validate_json(await request.body())
+        asked = ChangeRequest.model_validate_json(await request.body())
     except ValidationError as fault:
         return JSONResponse({"text": f"The page sent no change: {fault.errors()[0]['msg']}. Reload it."}, 400)
     _, folder = await run_in_threadpool(desk.case, key)
     order = Order(kind, folder, asked.edits, asked.who, asked.why, asked.stamp or None)
     try:
-        done: Done = await run_in_threadpool(desk.mender.change, order, asked.version)
+        done: ChangeResult = await run_in_threadpool(desk.mender.change, order, asked.version)
     except SgcadError as fault:
         return JSONResponse(_refusal(fault), _status(fault))
     return JSONResponse({"status": done.status, "seconds": round(done.seconds, 3), "changed": done.changed,
@@ -64,7 +64,7 @@ async def _change(request: Request, key: str, kind: Kind) -> Response:
 
 
 def _status(fault: SgcadError) -> int:
-    return 409 if isinstance(fault, Changed) else 503 if isinstance(fault, SimulationFailed) else 422
+    return 409 if isinstance(fault, CaseChanged) else 503 if isinstance(fault, SimulationFailed) else 422
 
 
 def _refusal(fault: SgcadError) -> dict[str, Any]:

@@ -68,7 +68,7 @@ def open_desk(
 
     Ctrl-C ends it; every change is on disk.
     """
-    serve(Asked(runs, host, port, tuple(names or ()), token, open_browser, mlflow, prefect))
+    serve(DeskOptions(runs, host, port, tuple(names or ()), token, open_browser, mlflow, prefect))
 
 
 @desk_app.command()
@@ -84,7 +84,7 @@ def export(
 
 
 @dataclass(frozen=True)
-class Asked:
+class DeskOptions:
     """The arguments of `sgcad desk open`."""
 
     runs: Path
@@ -97,7 +97,7 @@ class Asked:
     prefect: str = ""
 
 
-def serve(asked: Asked) -> None:
+def serve(asked: DeskOptions) -> None:
     """Serve until Ctrl-C. Raises ConfigError: no such folder, a port in use, a wrong address."""
     root, pages = _folder(asked.runs), (_page(asked.mlflow, "--mlflow"), _page(asked.prefect, "--prefect"))
     from flows.case_files.case_links import noted_desk
@@ -127,7 +127,7 @@ def server_of(app: object) -> uvicorn.Server:
     return uvicorn.Server(config)
 
 
-def gate_of(asked: Asked) -> Gate:
+def gate_of(asked: DeskOptions) -> Gate:
     """Conditions of access: beyond this machine a token is needed, which is generated where none is given."""
     from flows.desk.guard import LOOPBACK, Gate
 

@@ -27,7 +27,7 @@ WORKERS = 2
 Kind = Literal["revise", "undo", "rerun", "warm"]
 
 
-class Changed(SgcadError):
+class CaseChanged(SgcadError):
     """The case on disk differs from the one on the person's screen."""
 
 
@@ -44,7 +44,7 @@ class Order:
 
 
 @dataclass(frozen=True)
-class Done:
+class ChangeResult:
     """Result of a change, with findings by field."""
 
     status: str
@@ -78,18 +78,18 @@ class Mender:
         with self._worker() as worker, suppress(SgcadError):  # the first change will tell
             worker.call(Order("warm", folder), timeout_s=MEND_S)
 
-    def change(self, order: Order, version: str) -> Done:
+    def change(self, order: Order, version: str) -> ChangeResult:
         """Make a change of the case as the person saw it.
 
         Raises Changed, WrongEdit and BadInput (nothing was changed), SimulationFailed (the process died).
         """
         with self._alone(order.folder), self._worker() as worker:
             if version != version_of(order.folder):
-                raise Changed(
+                raise CaseChanged(
                     "This case was changed on disk since you opened it (another person, or a run). Your change was not "
                     "made: look at the case as it is now, then make it again."
                 )
-            done: Done = worker.call(order, timeout_s=RUN_S if order.kind == "rerun" else MEND_S)
+            done: ChangeResult = worker.call(order, timeout_s=RUN_S if order.kind == "rerun" else MEND_S)
             with self._lock:
                 self._said[order.folder] = (version_of(order.folder), done.findings)
         return done
@@ -122,7 +122,7 @@ class Mender:
 
 
 # ------------------------------------------------------------------ the far end
-def work(order: Order) -> Done | None:
+def work(order: Order) -> ChangeResult | None:
     """Make a change in the worker process. Raises WrongEdit, BadInput, ConfigError."""
     from flows.case import revise_case
 
@@ -136,7 +136,7 @@ def work(order: Order) -> Done | None:
     else:
         done = revise_case.revise(order.folder, order.edits, who=order.who, why=order.why, seen=order.seen)
     said = {name: [_line(finding) for finding in found] for name, found in done.findings.items()}
-    return Done(str(done.result["status"]), said, done.seconds, done.changed)
+    return ChangeResult(str(done.result["status"]), said, done.seconds, done.changed)
 
 
 def _line(finding: Any) -> str:
@@ -144,7 +144,7 @@ def _line(finding: Any) -> str:
     return f"{finding.what}{f': {finding.value}' if finding.value else ''}{remedy}"
 
 
-def _rerun(folder: Path) -> Done:
+def _rerun(folder: Path) -> ChangeResult:
     """Run the whole case again under its config, with its edits."""
     from flows.case import revise_case, run_case
     from flows.case_files import find_cases
@@ -153,7 +153,7 @@ def _rerun(folder: Path) -> Done:
     case = revise_case.opened(folder)
     digest = find_cases.digest_of(case.case, case.config)
     ending = run_case.run_case(case.config, case.case, folder.parent.parent, digest, run_at_once)
-    return Done(str(ending.result["status"]), {}, float(sum(ending.result["seconds"].values())), True)
+    return ChangeResult(str(ending.result["status"]), {}, float(sum(ending.result["seconds"].values())), True)
 
 
 def _warm_up(folder: Path) -> None:

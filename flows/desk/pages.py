@@ -10,10 +10,10 @@ from urllib.parse import quote
 from fastapi import APIRouter, Request
 from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
 
-from flows.desk.context import STATIC, Desk, Gone
+from flows.desk.context import STATIC, CaseGone, Desk
 from flows.desk.index import version_of
 from flows.desk.views import case_view, edit_form, filters
-from flows.desk.views.filters import Asked
+from flows.desk.views.filters import ListQuery
 from flows.desk.views.map_shapes import map_of
 from sgcad_core.errors import SgcadError
 from sgcad_core.records.edits import effective
@@ -36,7 +36,7 @@ def desk_of(request: Request) -> Desk:
 @router.get("/")
 def list_page(request: Request) -> Response:
     """The list of cases, filtered and sorted."""
-    desk, asked = desk_of(request), Asked.of(request.query_params)
+    desk, asked = desk_of(request), ListQuery.of(request.query_params)
     listing = desk.index.listing()
     everything = list(listing.rows.values())
     rows = filters.chosen(everything, asked)
@@ -52,7 +52,7 @@ def list_page(request: Request) -> Response:
 @router.get("/case/{key:path}")
 def case_page(request: Request, key: str) -> Response:
     """One case: report, drawing, map, player, facts."""
-    desk, asked = desk_of(request), Asked.of(request.query_params)
+    desk, asked = desk_of(request), ListQuery.of(request.query_params)
     row, folder = desk.case(key)
     result = desk.result(folder)
     rows = filters.chosen(desk.index.listing().rows.values(), asked)
@@ -101,7 +101,7 @@ def drawing(request: Request, number: int, key: str) -> Response:
     _, folder = desk_of(request).case(key)
     found = case_view.diagrams_of(folder)
     if not 1 <= number <= len(found):
-        raise Gone(f"This report has {len(found)} drawings; there is no number {number}.")
+        raise CaseGone(f"This report has {len(found)} drawings; there is no number {number}.")
     return _file(request, key, found[number - 1].name, "image/png", {})
 
 
@@ -109,7 +109,7 @@ def drawing(request: Request, number: int, key: str) -> Response:
 def download(request: Request, name: str, key: str) -> Response:
     """One of the case's files to download."""
     if name not in case_view.FILES:
-        raise Gone(f"{name!r} is no file of a case.")
+        raise CaseGone(f"{name!r} is no file of a case.")
     case = key.rpartition("/")[2]
     return _file(request, key, name, "application/octet-stream", {}, filename=f"{case}-{name}")
 
@@ -118,7 +118,7 @@ def download(request: Request, name: str, key: str) -> Response:
 def attempt(request: Request, attempt: str, name: str, key: str) -> Response:
     """A writer's prompt or answer as plain text."""
     if not case_view.ATTEMPT.fullmatch(attempt) or name not in case_view.ATTEMPT_FILES:
-        raise Gone(f"{attempt}/{name} is no file of an attempt.")
+        raise CaseGone(f"{attempt}/{name} is no file of an attempt.")
     return _file(request, key, f"attempts/{attempt}/{name}", "text/plain; charset=utf-8", {})
 
 
@@ -139,11 +139,11 @@ def _file(
     _, folder = desk.case(key)
     file = folder / name
     if not file.resolve().is_relative_to(desk.root) or not file.is_file():
-        raise Gone(f"This case has no {name}.")
+        raise CaseGone(f"This case has no {name}.")
     try:
         content = file.read_bytes()  # whole: a batch may write the case anew while its length is told already
     except OSError as fault:
-        raise Gone(f"This case has no {name} any more ({fault.strerror}).") from fault
+        raise CaseGone(f"This case has no {name} any more ({fault.strerror}).") from fault
     kept = {"Content-Disposition": f"attachment; {_named(filename)}"} if filename else {}
     return Response(content, media_type=kind, headers={**headers, **kept})
 

@@ -56,29 +56,29 @@ def drive_script(script: Script, order: Order, place: Path, content: str = "") -
     """Run a script's drives. `content`: digest of the script's files; "": finished drives are not reused."""
     found = []
     for ego, role in egos(script, order.ego, order.roles):
-        told: _Told | None = None
+        told: _StagedEgo | None = None
         for entry in order.drivers:
             target = place / entry.label / ego
             digest = _digest(content, entry, order, ego, role)
             done = _done(target, digest) if content and not order.fresh else None
             if done is None and told is None:
-                told = _Told.of(script, ego)
-            found.append(done or _one(cast("_Told", told), order, entry, role, target, digest))
+                told = _StagedEgo.of(script, ego)
+            found.append(done or _drive_one(cast("_StagedEgo", told), order, entry, role, target, digest))
     return found
 
 
 @dataclass(frozen=True, eq=False)
-class _Told:
+class _StagedEgo:
     """An ego's staging and its last moments to avoid the contact: the same for all drivers."""
 
     staging: Staging
     avoidance: dict[str, Any] | None
 
     @staticmethod
-    def of(script: Script, ego: str) -> _Told:
+    def of(script: Script, ego: str) -> _StagedEgo:
         staging = staged(script, ego)
         could = avoidance(staging)
-        return _Told(staging, could.model_dump(mode="json") if could else None)
+        return _StagedEgo(staging, could.model_dump(mode="json") if could else None)
 
 
 def _digest(content: str, entry: DriverEntry, order: Order, ego: str, role: str) -> str:
@@ -94,7 +94,9 @@ def _done(target: Path, digest: str) -> dict[str, Any] | None:
     return told if isinstance(told, dict) and told.get("digest") == digest else None
 
 
-def _one(told: _Told, order: Order, entry: DriverEntry, role: str, target: Path, digest: str) -> dict[str, Any]:
+def _drive_one(
+    told: _StagedEgo, order: Order, entry: DriverEntry, role: str, target: Path, digest: str
+) -> dict[str, Any]:
     started, staging = time.perf_counter(), told.staging
     about: dict[str, Any] = {
         "case": staging.script.case, "driver": entry.label, "fields": entry.raw, "ego": staging.ego, "role": role,
@@ -107,11 +109,11 @@ def _one(told: _Told, order: Order, entry: DriverEntry, role: str, target: Path,
         return about | {"outcome": "failed", "reason": str(fault)}
     about |= came(driven).model_dump(mode="json") | {"avoidance": told.avoidance}
     about |= {"seconds": round(time.perf_counter() - started, 4)}
-    _leave(driven, about | {"series": series(driven)}, target, order)
+    _write_drive(driven, about | {"series": series(driven)}, target, order)
     return about
 
 
-def _leave(driven: Drive, told: Mapping[str, Any], target: Path, order: Order) -> None:
+def _write_drive(driven: Drive, told: Mapping[str, Any], target: Path, order: Order) -> None:
     """The drive's files, whole or not at all."""
     target.parent.mkdir(parents=True, exist_ok=True)
     with temp_folders.beside(target) as partial:

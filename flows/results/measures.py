@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, NamedTuple
 
-from flows.results.reading import Ran, Study, made_of
+from flows.results.reading import FinishedCase, Study, made_of
 from sgcad_core.metrics.generation import quality, written_files
 from sgcad_core.metrics.labels.label_match import NETWORK_FIELDS, compare
 from sgcad_core.result import STATUSES, as_declared, counts_of
@@ -160,7 +160,7 @@ _CONFLICT = {
 }  # fmt: skip
 
 
-def values_of(ran: Ran, label: Mapping[str, Any] | None) -> dict[str, float]:
+def values_of(ran: FinishedCase, label: Mapping[str, Any] | None) -> dict[str, float]:
     """All values of a finished case, as fractions and in SI units."""
     found = dict(_generation(ran))
     found |= dict(_people(ran.result.get("person") or {}))
@@ -182,7 +182,7 @@ def study_values(study: Study) -> dict[str, dict[str, dict[str, float]]]:
     }
 
 
-def _generation(ran: Ran) -> Iterator[tuple[str, float]]:
+def _generation(ran: FinishedCase) -> Iterator[tuple[str, float]]:
     yield from ((status, float(ran.result["status"] == status)) for status in STATUSES)
     seen = ran.seen()
     counts = written_files(seen)

@@ -48,7 +48,7 @@ class Arm:
 
 
 @dataclass(frozen=True)
-class Ran:
+class FinishedCase:
     """One finished case of one arm."""
 
     arm: str
@@ -84,7 +84,7 @@ class Study:
     """study.json as it stands: versions, digests, hardware."""
 
     @cached_property
-    def ran(self) -> Mapping[str, Mapping[str, Ran]]:
+    def ran(self) -> Mapping[str, Mapping[str, FinishedCase]]:
         """arm -> case -> finished case, in the study's order."""
         return {arm.name: {ran.case: ran for ran in self._finished(arm.name)} for arm in self.arms}
 
@@ -96,12 +96,12 @@ class Study:
         """Finished and planned cases, all arms together."""
         return sum(map(len, self.ran.values())), len(self.arms) * len(self.cases)
 
-    def _finished(self, arm: str) -> Iterator[Ran]:
+    def _finished(self, arm: str) -> Iterator[FinishedCase]:
         for case in self.cases:
             folder = self.folder / arm / case
             result = _json(folder / "result.json")
             if result and "status" in result:
-                yield Ran(arm, case, folder, result, _json(folder / "metrics.json"))
+                yield FinishedCase(arm, case, folder, result, _json(folder / "metrics.json"))
 
 
 # ------------------------------------------------------------------ the study

@@ -1,6 +1,6 @@
 """The file, cases and overrides of a study started before, read from study.json by the study's name.
 
-    resume.before(Path("alpha"), Path("runs"))      # from runs/studies/alpha/study.json
+    resume.former_arguments(Path("alpha"), Path("runs"))      # from runs/studies/alpha/study.json
 
 Arguments of the new command override them.
 """
@@ -17,7 +17,7 @@ from sgcad_core.errors import ConfigError
 
 
 @dataclass(frozen=True)
-class Before:
+class FormerArguments:
     """The arguments with which a study was started; empty if it is new."""
 
     file: Path
@@ -26,23 +26,23 @@ class Before:
     overrides: tuple[str, ...] = ()
 
 
-def before(asked: Path, out: Path) -> Before:
+def former_arguments(asked: Path, out: Path) -> FormerArguments:
     """The arguments with which a study, given by file or name, was started."""
     document = folder_of(safe_id(asked.stem), out) / DOCUMENT
     try:
         about = json.loads(document.read_text(encoding="utf-8"))
         again, truth = about["again"], about["truth"]
-        known = Before(
+        known = FormerArguments(
             Path(again["file"]), tuple(map(Path, again["cases"])), Path(truth) if truth else None, tuple(again["set"])
         )
     except (OSError, ValueError, KeyError, TypeError):
-        return Before(asked)
+        return FormerArguments(asked)
     if asked.is_file() and asked.resolve() != known.file:
-        return Before(asked)  # another study of the same name: its own cases, or none
-    return known if known.file.is_file() else Before(asked, known.cases, known.truth, known.overrides)
+        return FormerArguments(asked)  # another study of the same name: its own cases, or none
+    return known if known.file.is_file() else FormerArguments(asked, known.cases, known.truth, known.overrides)
 
 
-def cases_of(known: Before, named: tuple[Path, ...]) -> tuple[Path, ...]:
+def cases_of(known: FormerArguments, named: tuple[Path, ...]) -> tuple[Path, ...]:
     """The folders named now, else the former ones. Raises ConfigError where a former one is gone."""
     if named:
         return named

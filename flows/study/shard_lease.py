@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from flows.study.shared_storage import Share, Unreachable
+from flows.study.shared_storage import SharedFolder, Unreachable
 from sgcad_core.errors import SgcadError
 
 BEAT_S = 5.0
@@ -32,7 +32,7 @@ def lease_name(shard: int) -> str:
 class Lease:
     """Held by one flow run; `check` before every hand-in."""
 
-    share: Share
+    share: SharedFolder
     shard: int
     run: str
     beat_s: float = BEAT_S

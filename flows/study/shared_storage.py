@@ -63,7 +63,7 @@ def mark_name(arm: str, case: str, digest: str, failed: bool = False) -> str:
 
 
 @dataclass(frozen=True)
-class Share:
+class SharedFolder:
     """One study's folder on the storage. Every method raises Unreachable where the storage does not answer."""
 
     address: str

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
 from flows.study.shard_lease import lease_name
-from flows.study.shards import Work
-from flows.study.shared_storage import Mark, Share, Unreachable
+from flows.study.shards import ShardJob
+from flows.study.shared_storage import Mark, SharedFolder, Unreachable
 from sgcad_core.errors import ConfigError
 
 State = Literal["waiting", "taken", "ended"]
@@ -51,12 +51,12 @@ class _Turn:
 
 
 @dataclass
-class Watch:
+class ShardWatch:
     """Submits shards and replaces lost runs; call `step` until it returns False."""
 
-    share: Share
+    share: SharedFolder
     pool: Pool
-    shards: Sequence[Sequence[Work]]
+    shards: Sequence[Sequence[ShardJob]]
     on_mark: Callable[[Mark], None]
     patience_s: float = PATIENCE_S
     start_s: float = START_S
@@ -117,7 +117,9 @@ class Watch:
         self._turns[number] = _Turn(self.pool.submit(number), now, left, fruitless=fruitless)
 
 
-def follow(watch: Watch, clock: Callable[[], float], wait: Callable[[], None], cut_s: float = 600.0) -> None:
+def watch_until_done(
+    watch: ShardWatch, clock: Callable[[], float], wait: Callable[[], None], cut_s: float = 600.0
+) -> None:
     """Step until all results have arrived; waits at most `cut_s` seconds for a storage that does not answer."""
     fine = clock()
     while True:

@@ -44,7 +44,7 @@ def test_a_service_that_ended_is_neither_alive_nor_well(tmp_path):
     health.services_folder(tmp_path).mkdir()
     running.write(health.services_folder(tmp_path))
     assert not running.healthy()
-    with pytest.raises(doctor.Trouble, match="server not well, see log"):
+    with pytest.raises(doctor.CheckFailed, match="server not well, see log"):
         doctor.CHECKS["services"](tmp_path)
 
 

@@ -106,7 +106,7 @@ class Claims:
             if digest not in self._held and done(digest) and not self._alive(f"{CLAIMS}/{name}"):
                 self.place.remove(f"{CLAIMS}/{name}")
 
-    def forsake(self, claim: Claim) -> None:
+    def stop_renewing(self, claim: Claim) -> None:
         """Stop renewing a claim whose report another worker has taken over."""
         with self._guard:
             self._held.pop(claim.digest, None)

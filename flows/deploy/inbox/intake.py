@@ -29,7 +29,7 @@ from sgcad_core.result import counts_of
 
 LEDGER = f"{HIDDEN}/ledger"
 UNREAD = "unread"
-APART = {"generated": "done", "refused": "refused", "exhausted": "failed", "failed": "failed", UNREAD: UNREAD}
+FOLDERS = {"generated": "done", "refused": "refused", "exhausted": "failed", "failed": "failed", UNREAD: UNREAD}
 """Status of a case -> folder its report is moved to; `unread`: no reader takes it."""
 UNFINISHED = (".part", ".partial", ".tmp", ".temp", ".crdownload", ".filepart", ".swp", "~")
 """Endings that programs give to unfinished files."""
@@ -73,7 +73,7 @@ class Intake:
         patience, watched = time.monotonic() + wait_s, time.monotonic() + watch_s
         with self.claims.beating():
             while True:
-                self.put_unread_apart()
+                self.move_unread()
                 if taken := self.take(portion):
                     self._do(taken, do)
                     patience = time.monotonic() + wait_s
@@ -99,7 +99,7 @@ class Intake:
                 self.claims.release(rest.claim)
                 _unstage(rest)
 
-    def put_unread_apart(self) -> None:
+    def move_unread(self) -> None:
         """Move files that no reader takes to `unread`, with the reason in outcome.json."""
         for entry in self._waiting():
             if _is_report(entry) or entry.name.lower().endswith(UNFINISHED) or not self._is_settled(entry):
@@ -116,7 +116,7 @@ class Intake:
                 "case": safe_id(entry.name),
                 "name": entry.name,
             }
-            if self._put_apart(entry, outcome):
+            if self._move_with_outcome(entry, outcome):
                 self.counts[UNREAD] += 1
 
     # ------------------------------------------------------------------ taking
@@ -134,7 +134,7 @@ class Intake:
 
     def _waiting(self) -> list[Entry]:
         """All entries but result folders and entries being moved away; listed before the moves are read."""
-        entries = [e for e in self.place.entries() if e.name not in APART.values()]
+        entries = [e for e in self.place.entries() if e.name not in FOLDERS.values()]
         leaving = self.place.leaving()
         return [e for e in entries if e.name not in leaving]
 
@@ -193,7 +193,7 @@ class Intake:
         """Whether this content is finished; its report is then moved to its folder."""
         if (outcome := self._outcome(digest)) is None:
             return False
-        if self._put_apart(entry, outcome):
+        if self._move_with_outcome(entry, outcome):
             self.counts["again"] += 1
         return True
 
@@ -206,7 +206,7 @@ class Intake:
         """Record a case's ending and move its report, unless another worker has taken it over."""
         _unstage(taken)
         if not self.claims.is_mine(taken.claim):
-            self.claims.forsake(taken.claim)
+            self.claims.stop_renewing(taken.claim)
             self.counts["taken_over"] += 1
             return
         outcome = {key: result.get(key) for key in ("status", "reason", "missing")} | {"account": _account(result)}
@@ -220,7 +220,7 @@ class Intake:
         if outcome["status"] != "failed":  # a failed one may be dropped again
             self.place.create(f"{LEDGER}/{taken.claim.digest}.json", _json(outcome))
             outcome = self._outcome(taken.claim.digest) or outcome
-        self._put_apart(taken.entry, outcome)
+        self._move_with_outcome(taken.entry, outcome)
         self.claims.release(taken.claim)
         self.counts[str(outcome["status"])] += 1
 
@@ -229,9 +229,9 @@ class Intake:
         config = result.get("config")
         return str(self.out.resolve() / str(config) / case.id) if config else None
 
-    def _put_apart(self, entry: Entry, outcome: dict[str, Any]) -> bool:
+    def _move_with_outcome(self, entry: Entry, outcome: dict[str, Any]) -> bool:
         """Move a report beside its outcome, unless it was changed or moved meanwhile."""
-        folder = f"{APART[outcome['status']]}/{outcome['case']}"
+        folder = f"{FOLDERS[outcome['status']]}/{outcome['case']}"
         if self.place.entry(entry.name) != entry:
             return False
         self.place.write(f"{folder}/outcome.json", _json(outcome))

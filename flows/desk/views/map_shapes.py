@@ -15,7 +15,7 @@ import numpy as np
 
 from flows.player.player_highlights import road_along, road_axes
 from flows.player.road_shapes import drawing_of
-from flows.results.reading import Ran
+from flows.results.reading import FinishedCase
 from flows.results.report.scene import Scene, scene_of
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
@@ -85,7 +85,7 @@ def map_of(folder: Path, result: Mapping[str, Any]) -> RoadMap | None:
         graph, drawing = parse_net(net_xml), drawing_of(net_xml)
     except (OSError, ValueError, InvalidOutput):
         return None
-    scene = scene_of(Ran(folder.parent.name, folder.name, folder, result, {}))
+    scene = scene_of(FinishedCase(folder.parent.name, folder.name, folder, result, {}))
     axes = road_axes(result.get("facts") or ())
     count = sum(len(edge.lanes) for edge in graph.edges.values())  # a drawing has the lanes first, then the ways across
     own = [(edge, lane) for edge in graph.edges.values() for lane in edge.lanes]

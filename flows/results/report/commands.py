@@ -19,14 +19,14 @@ TEXT_WIDTH = 120
 """Columns where the output is no terminal."""
 PAGE = "report.html"
 
-Given = Annotated[Path, typer.Argument(help="A study's folder or its name, or a folder of runs.")]
+StudyPath = Annotated[Path, typer.Argument(help="A study's folder or its name, or a folder of runs.")]
 Out = Annotated[Path, typer.Option("--out", "-o", help="Folder of the results, in which a study is found by name.")]
 Truth = Annotated[Path | None, typer.Option("--truth", help="Folder of <case>.json; default: the study's own.")]
 Only = Annotated[str, typer.Option("--only", help="Only cases whose name begins with this.")]
 
 
 def table(
-    study: Given,
+    study: StudyPath,
     out: Out = Path("runs"),
     truth: Truth = None,
     only: Only = "",
@@ -53,7 +53,7 @@ def table(
 
 
 def report(
-    study: Given,
+    study: StudyPath,
     out: Out = Path("runs"),
     truth: Truth = None,
     only: Only = "",

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import quote
 
-from flows.results.reading import Arm, Ran, Study
+from flows.results.reading import Arm, FinishedCase, Study
 from sgcad_core.handover.outcome import OUTCOMES
 from sgcad_core.kinds import CRASH_ROLES
 
@@ -24,7 +24,7 @@ NOTE = (
 )
 
 
-class Handed(NamedTuple):
+class StudyDrive(NamedTuple):
     """One drive of a study; `ego`: the driven actor ("" in results of older versions)."""
 
     arm: str
@@ -41,27 +41,27 @@ class Handed(NamedTuple):
         return self.arm, self.driver, self.role
 
 
-def drives_of(study: Study) -> list[Handed]:
+def drives_of(study: Study) -> list[StudyDrive]:
     """Every drive that the study's cases have, in the order of arms and cases."""
     return [d for arm in study.arms for ran in study.ran[arm.name].values() for d in _of(ran)]
 
 
-def _of(ran: Ran) -> Iterator[Handed]:
+def _of(ran: FinishedCase) -> Iterator[StudyDrive]:
     for driver, roles in (ran.metrics.get("drive") or {}).items():
         for role, told in roles.items():
             outcome = next((o for o in ENDED if told.get(o)), "")
             if outcome:
                 ego = str(told.get("ego") or "")
-                yield Handed(ran.arm, ran.case, driver, role, ego, outcome, ran.folder / "drive" / driver / ego)
+                yield StudyDrive(ran.arm, ran.case, driver, role, ego, outcome, ran.folder / "drive" / driver / ego)
 
 
-def columns_of(drives: Sequence[Handed]) -> list[tuple[str, str, str]]:
+def columns_of(drives: Sequence[StudyDrive]) -> list[tuple[str, str, str]]:
     """(arm, driver, role) in the order of roles, then of arms."""
     found = dict.fromkeys(d.column for d in drives)
     return sorted(found, key=lambda c: CRASH_ROLES.index(c[2]) if c[2] in CRASH_ROLES else len(CRASH_ROLES))
 
 
-def by_difference(drives: Sequence[Handed]) -> list[str]:
+def by_difference(drives: Sequence[StudyDrive]) -> list[str]:
     """Cases, those with most different outcomes within a role first."""
     seen: dict[str, dict[str, set[str]]] = {}
     for d in drives:
@@ -98,7 +98,7 @@ def _named(arm: Arm, driver: str) -> str:
     return arm.label if arm.label != arm.name or driver == arm.name else f"{arm.name}: {driver}"
 
 
-def _sums(drives: Sequence[Handed], columns: Sequence[tuple[str, str, str]]) -> str:
+def _sums(drives: Sequence[StudyDrive], columns: Sequence[tuple[str, str, str]]) -> str:
     cells = []
     for column in columns:
         mine = [d.outcome for d in drives if d.column == column]
@@ -107,11 +107,11 @@ def _sums(drives: Sequence[Handed], columns: Sequence[tuple[str, str, str]]) -> 
     return f"<tr><th>all</th>{''.join(cells)}</tr>"
 
 
-def _row(case: str, drives: Sequence[Handed | None], place: Path) -> str:
+def _row(case: str, drives: Sequence[StudyDrive | None], place: Path) -> str:
     return f'<tr><th scope="row">{escape(case)}</th>{"".join(_cell(d, place) for d in drives)}</tr>'
 
 
-def _cell(drive: Handed | None, place: Path) -> str:
+def _cell(drive: StudyDrive | None, place: Path) -> str:
     if drive is None:
         return '<td class="none">–</td>'
     letter, page = drive.outcome[0].upper(), drive.folder / "drive.html"

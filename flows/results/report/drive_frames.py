@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from flows.player.overview_png import GROUND, RED
-from flows.results.reading import Ran, paths_of
+from flows.results.reading import FinishedCase, paths_of
 from flows.results.report.axes import SIDE_IN, bare, car, look, say, star, under
-from flows.results.report.drive_cards import Handed, by_difference, drives_of
+from flows.results.report.drive_cards import StudyDrive, by_difference, drives_of
 from flows.results.report.plots import Plot, as_png, canvas
 from flows.results.report.scene import Scene, scene_of
 from flows.results.table import Tables
@@ -38,7 +38,7 @@ def drive_frames(tables: Tables) -> list[Plot]:
     ]
 
 
-def _frames(tables: Tables, role: str, drives: Sequence[Handed]) -> Plot:
+def _frames(tables: Tables, role: str, drives: Sequence[StudyDrive]) -> Plot:
     case = by_difference(drives)[0]
     rows = [d for d in drives if d.case == case][:MOST_ROWS]
     wide = 2 * len(MOMENTS_S)
@@ -57,7 +57,7 @@ def _frames(tables: Tables, role: str, drives: Sequence[Handed]) -> Plot:
     return Plot(f"drives_{role}", f"Script and drive side by side: the {role}", caption, as_png(figure))
 
 
-def _told(drive: Handed) -> Mapping[str, Any]:
+def _told(drive: StudyDrive) -> Mapping[str, Any]:
     try:
         told = json.loads((drive.folder / "drive.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -65,7 +65,7 @@ def _told(drive: Handed) -> Mapping[str, Any]:
     return told if isinstance(told, dict) else {}
 
 
-def _words(axes: Axes, label: str, drive: Handed, told: Mapping[str, Any]) -> None:
+def _words(axes: Axes, label: str, drive: StudyDrive, told: Mapping[str, Any]) -> None:
     axes.set_axis_off()
     axes.text(0, 0.96, textwrap.fill(label, 20), va="top", size=8.5, weight="bold", parse_math=False)
     color = COLORS.get(drive.outcome, BAD)
@@ -80,7 +80,7 @@ def _words(axes: Axes, label: str, drive: Handed, told: Mapping[str, Any]) -> No
     axes.text(0, 0.54, "\n".join(lines), va="top", size=7.5, linespacing=1.4, parse_math=False)
 
 
-def _pairs(grid: Sequence[Axes], ran: Ran, drive: Handed, told: Mapping[str, Any]) -> None:
+def _pairs(grid: Sequence[Axes], ran: FinishedCase, drive: StudyDrive, told: Mapping[str, Any]) -> None:
     scene = scene_of(ran)
     for axes in grid:
         bare(axes)

@@ -18,7 +18,7 @@ from PIL import Image, UnidentifiedImageError
 
 from flows.case.case_in_words import lacking_in_words
 from flows.player.player_data import COLORS
-from flows.results.reading import Ran, paths_of
+from flows.results.reading import FinishedCase, paths_of
 from flows.results.table import Tables, reference_of
 from sgcad_core.case.records import Floats
 from sgcad_core.errors import InvalidOutput
@@ -83,7 +83,7 @@ def _thumb(diagram: Path) -> str | None:
     return "data:image/webp;base64," + base64.b64encode(out.getvalue()).decode("ascii")
 
 
-def _arm(ran: Ran, values: Mapping[str, float], page: Path) -> dict[str, Any]:
+def _arm(ran: FinishedCase, values: Mapping[str, float], page: Path) -> dict[str, Any]:
     """One tile: status, verdicts (1 right, 0 wrong, null unstated), figures to sort by, and what to draw."""
     player = ran.folder / "player.html"
     collision = ran.result.get("collision") or {}
@@ -113,7 +113,7 @@ def _account(result: Mapping[str, Any]) -> dict[str, Any] | None:
 
 
 # ------------------------------------------------------------------ what to draw
-def _drawn(ran: Ran) -> dict[str, Any] | None:
+def _drawn(ran: FinishedCase) -> dict[str, Any] | None:
     """Roads, paths and the contact in decimetres around the middle; None where there is no network."""
     try:
         root = parse_xml((ran.folder / "road.net.xml").read_text(encoding="utf-8"), "net_xml")

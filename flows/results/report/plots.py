@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flows.player.player_data import COLORS
-from flows.results.arm_displacement import errors_against, why_none
+from flows.results.arm_displacement import displacements_from, no_displacement_reason
 from flows.results.measures import GENERATION, NETWORK_WRONG, Measure
 from flows.results.reading import Arm
 from flows.results.table import Tables, reference_of
@@ -204,7 +204,7 @@ def displacement(tables: Tables) -> Plot:
     predicted = {a.label: _values(tables, a.name, "x_fde") for a in tables.study.arms[:MOST_ARMS]}
     if not any(predicted.values()):
         return Plot("displacement", title, "", reason="no case was executed")
-    apart = errors_against(tables.study, reference_of(tables.study))
+    apart = displacements_from(tables.study, reference_of(tables.study))
     figure = canvas(10.0, 3.2)
     panels: list[tuple[str, str, Mapping[str, Sequence[float]]]] = [("Prediction error over 3 s: FDE", "m", predicted)]
     if apart:
@@ -219,7 +219,7 @@ def displacement(tables: Tables) -> Plot:
     figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8)
     caption = (
         "Left: error of a constant-velocity prediction, `exact` reading. "
-        + (why_none(tables.study) if not apart else "Right: no published or labelled trajectory exists, so arms are "
+        + (no_displacement_reason(tables.study) if not apart else "Right: no trajectory is published, so arms are "
            "held against the reference arm, case by case: both runs are laid over each other at V1's pose at the first "
            "contact, and vehicles of the same id compared over the 3 s before it, FDE at its far end.")
     )  # fmt: skip

@@ -9,7 +9,7 @@ import numpy as np
 
 from flows.player.player_data import COLORS
 from flows.player.road_shapes import Drawing, drawing_of
-from flows.results.reading import Ran, paths_of
+from flows.results.reading import FinishedCase, paths_of
 from sgcad_core.case.records import Floats
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.geometry.plane import Box, overlap_polygon
@@ -56,7 +56,7 @@ class Scene:
         return points.min(axis=0), points.max(axis=0)
 
 
-def scene_of(ran: Ran) -> Scene | None:
+def scene_of(ran: FinishedCase) -> Scene | None:
     """The scene of an executed case; None where there is no readable network or motion."""
     try:
         drawing = drawing_of((ran.folder / "road.net.xml").read_text(encoding="utf-8"))

@@ -10,7 +10,7 @@ import numpy as np
 from PIL import Image
 
 from flows.player.overview_png import GROUND, RED
-from flows.results.reading import Ran, Study, made_of
+from flows.results.reading import FinishedCase, Study, made_of
 from flows.results.report.axes import SIDE_IN, bare, car, look, say, star, under
 from flows.results.report.plots import Plot, as_png, canvas
 from flows.results.report.scene import scene_of
@@ -120,7 +120,7 @@ def _truth_words(label: Mapping[str, Any]) -> str:
     return "\n".join(told)
 
 
-def _network(axes: Axes, ran: Ran | None, label: Mapping[str, Any] | None) -> None:
+def _network(axes: Axes, ran: FinishedCase | None, label: Mapping[str, Any] | None) -> None:
     bare(axes)
     axes.set_facecolor(GROUND)
     scene = scene_of(ran) if ran else None
@@ -182,7 +182,7 @@ def _story(report: str, most: int = 4, width: int = 150) -> str:
     return "\n".join(textwrap.fill("• " + " ".join(line.split()), width, subsequent_indent="  ") for line in lines)
 
 
-def _verdicts(axes: Axes, label: str, ran: Ran | None, truth: Mapping[str, Any] | None) -> None:
+def _verdicts(axes: Axes, label: str, ran: FinishedCase | None, truth: Mapping[str, Any] | None) -> None:
     axes.set_axis_off()
     axes.text(0, 0.96, textwrap.fill(label, 24), va="top", size=9, weight="bold", parse_math=False)
     if ran is None:
@@ -198,7 +198,7 @@ def _verdicts(axes: Axes, label: str, ran: Ran | None, truth: Mapping[str, Any] 
         axes.text(0, 0.74 - 0.13 * k, f"{sign} {text}", size=8, color=GOOD if right else BAD, parse_math=False)
 
 
-def _moments(grid: Sequence[Axes], ran: Ran | None) -> None:
+def _moments(grid: Sequence[Axes], ran: FinishedCase | None) -> None:
     scene = scene_of(ran) if ran else None
     for axes, moment in zip(grid, MOMENTS_S, strict=True):
         bare(axes)

@@ -72,15 +72,15 @@ def run(folder: Path, workers: int, kills: int, portion: int) -> int:
     inbox, out = folder / "inbox", folder / "out"
     total = len(list(inbox.glob("*.txt")))
     marks = [total * (k + 1) // (kills + 1) for k in range(kills)]
-    crew = [start(inbox, out, portion) for _ in range(workers)]
+    runner = [start(inbox, out, portion) for _ in range(workers)]
     killed, deadline = 0, time.monotonic() + LIMIT_S
-    while any(w.poll() is None for w in crew) and time.monotonic() < deadline:
+    while any(w.poll() is None for w in runner) and time.monotonic() < deadline:
         if killed < kills and len(list((inbox / "done").glob("*"))) >= marks[killed]:
-            victim = crew.pop(0)
+            victim = runner.pop(0)
             os.kill(victim.pid, signal.SIGKILL)
             victim.wait()
             killed += 1
-            crew.append(start(inbox, out, portion))
+            runner.append(start(inbox, out, portion))
         time.sleep(0.05)
     return killed
 

@@ -136,5 +136,5 @@ def test_a_case_that_is_logged_by_a_later_batch_links_to_its_run(folder, monkeyp
         case=SimpleNamespace(id="c1"),
     )  # fmt: skip
     for _ in range(2):
-        assert prefect_case_end.Showing(False, None).case(job, SimpleNamespace(reused=True), None) == ""
+        assert prefect_case_end.CaseReporter(False, None).case(job, SimpleNamespace(reused=True), None) == ""
         assert case_links.kept(folder) == {"mlflow": MLFLOW}

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flows.batch.plan_batch import Crew, batch_of
+from flows.batch.plan_batch import JobRunner, batch_of
 from flows.case_files.find_cases import cases_in
 from flows.case_files.record_json import pack
 from flows.case_files.stage_cache import Shelf, content_of, keys_of
@@ -32,17 +32,17 @@ def work(tmp_path, reports):
 
     def run(*files, shelf=True, out="out"):
         batch = replace(batch_of(cases, files, tmp_path / out, jobs=2), shelf=tmp_path / "shelf" if shelf else None)
-        plan, crew, names = batch.plan(), Crew(batch), []
+        plan, runner, names = batch.plan(), JobRunner(batch), []
 
         def note(name, turn):
             names.append(name)
             return turn()
 
-        crew.begin(plan)
+        runner.begin(plan)
         try:
-            return {job.config.name: crew.finish(job, note).result for job in plan}, names
+            return {job.config.name: runner.finish(job, note).result for job in plan}, names
         finally:
-            crew.close()
+            runner.close()
 
     return run
 

@@ -11,7 +11,7 @@ import pytest
 
 from flows.case import revise_case
 from flows.desk.index import version_of
-from flows.desk.mending import Changed, Mender, Order
+from flows.desk.mending import CaseChanged, Mender, Order
 from flows.desk.views import edit_form
 from sgcad_core.errors import SimulationFailed
 
@@ -129,7 +129,7 @@ def test_the_death_of_the_process_changes_nothing_and_kills_nothing(config):
 
 def test_a_change_that_was_overtaken_starts_no_process(tmp_path):
     mender = Mender("no.such:module")
-    with pytest.raises(Changed, match="make it again"):
+    with pytest.raises(CaseChanged, match="make it again"):
         mender.change(Order("revise", tmp_path), "another")
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from flows.results.arm_displacement import apart, errors_against
+from flows.results.arm_displacement import apart, displacements_from
 from flows.results.measures import NETWORK_WRONG
 from flows.results.reading import load_study
 from flows.results.report import scenes
@@ -79,7 +79,7 @@ def test_the_same_motion_in_another_frame_is_no_displacement(study):
     folder = study({"a": {"c1": {}}, "b": {"c1": {}}})
     moved(folder / "b" / "c1", 0.7, 300.0)
     read = load_study(folder)
-    (error,) = errors_against(read, "a")["B"]
+    (error,) = displacements_from(read, "a")["B"]
     assert error.average_m == pytest.approx(0.0, abs=1e-3)
 
 
@@ -96,5 +96,5 @@ def test_a_slower_approach_is_displaced_by_what_it_lacks(study):
 def test_a_run_that_never_touched_is_not_held_against_another(study):
     folder = study({"a": {"c1": {}}, "b": {"c1": {"status": "refused"}}})
     read = load_study(folder)
-    assert errors_against(read, "a") == {}
-    assert errors_against(read, None) == {}
+    assert displacements_from(read, "a") == {}
+    assert displacements_from(read, None) == {}
