@@ -30,17 +30,14 @@ from sgcad_core.errors import SgcadError
 if TYPE_CHECKING:
     from flows.batch.plan_batch import Batch
     from flows.batch.progress_bar import BatchProgress
+    from flows.case_files.find_cases import Case
 
 Result = TypeVar("Result")
 
 DEFAULT_OUT = Path("runs")
 PATIENCE_S = 5.0
 
-app = typer.Typer(
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-)
+app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 app.add_typer(plugins_app, name="plugins")
 app.add_typer(index_app, name="index")
 app.add_typer(desk_app, name="desk")
@@ -115,19 +112,12 @@ def _encoded(encoding: str) -> list[str]:
 
 
 def _batch(
-    found: Sequence[object],
-    config: list[Path] | None,
-    overrides: list[str] | None,
-    out: Path,
-    jobs: int | None,
-    fresh: bool,
+    found: Sequence[Case], config: list[Path] | None, overrides: list[str], out: Path, jobs: int | None, fresh: bool
 ) -> None:
     """Check the whole batch, then run it and exit."""
-    from flows.batch import plan_batch as batches
+    from flows.batch import plan_batch, run_batch
 
-    made = batches.batch_of(found, settings.configs_or_default(config), out, overrides or (), jobs, fresh)  # type: ignore[arg-type]
-    from flows.batch import run_batch
-
+    made = plan_batch.batch_of(found, settings.configs_or_default(config), out, overrides, jobs, fresh)
     raise typer.Exit(_carry_out(made, lambda watch: run_batch.evaluate(made, watch.ended, on_turn=watch.turn))[0])
 
 
@@ -178,7 +168,7 @@ def study(
     study = spec.load_study(known.file)
     made = plan.plan(study, out, cases=given[0], truth=given[1], overrides=given[2], jobs=jobs, fresh=fresh)
     if hosts:
-        meeting = hosts_preflight.Away(hosts, deployment)
+        meeting = hosts_preflight.Hosts(hosts, deployment)
         code, submitted = _carry_out(made.batch, lambda watch: hosts_preflight.run(made, meeting, watch.ended))
         typer.echo(hosts_preflight.resubmitted_lines(submitted))
         raise typer.Exit(code)
@@ -239,12 +229,8 @@ def doctor(out: Out = DEFAULT_OUT) -> None:
     raise typer.Exit(0 if examine(out) else 1)
 
 
-app.command()(drive)
-app.command()(vary)
-app.command()(table)
-app.command()(report)
-app.command()(score)
-app.command()(revise)
+for command in (drive, vary, table, report, score, revise):
+    app.command()(command)
 
 
 def main() -> None:

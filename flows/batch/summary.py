@@ -128,10 +128,7 @@ def _accounts(tally: Tally) -> list[str]:
     sums = {name: sum(account[name] for _, account in known) for name in ("told", "has", "lacking", "assumed")}
     lines = ["of {told} things told the scenarios have {has} and lack {lacking}; {assumed} are assumed".format(**sums)]
     lacking = [(job, account) for job, account in known if account["verdict"] == "lacking"]
-    lines += [
-        f"{job.name}: lacks {case_in_words.lacking_in_words(account, 3)}" for job, account in lacking[:MAX_REASONS]
-    ]
-    return lines + ([f"... and {len(lacking) - MAX_REASONS} more"] if len(lacking) > MAX_REASONS else [])
+    return lines + _first([f"{job.name}: lacks {case_in_words.lacking_in_words(a, 3)}" for job, a in lacking])
 
 
 def _realised(endings: list[Ending]) -> str:
@@ -151,8 +148,7 @@ def _limits(tally: Tally) -> list[str]:
         return []
     noted = ((job.name, note) for job, e in tally.endings for note in e.result["notes"])
     told = [f"{name}: {note['text']}" for name, note in noted if note["kind"] == "limit"]
-    more = [f"... and {len(told) - MAX_REASONS} more"] if len(told) > MAX_REASONS else []
-    return [line[:400] for line in told[:MAX_REASONS]] + more
+    return _first(told)
 
 
 def _people(tally: Tally) -> list[str]:
@@ -171,5 +167,10 @@ def _reasons(tally: Tally) -> list[str]:
         for job, ending in tally.endings
         if ending.result["status"] != "generated"
     ]
-    more = [f"... and {len(told) - MAX_REASONS} more"] if len(told) > MAX_REASONS else []
-    return [line[:400] for line in told[:MAX_REASONS]] + more
+    return _first(told)
+
+
+def _first(lines: list[str]) -> list[str]:
+    """The first lines, shortened, and the number of the others."""
+    more = [f"... and {len(lines) - MAX_REASONS} more"] if len(lines) > MAX_REASONS else []
+    return [line[:400] for line in lines[:MAX_REASONS]] + more

@@ -85,6 +85,14 @@ def specs_of(record: CaseRecord, as_read: dict[str, Any] | None = None) -> dict[
     } | ({"as_read": as_read} if as_read else {})
 
 
+def report_path(folder: Path) -> Path:
+    """The path of a case's report, from its folder. Raises BadInput."""
+    try:
+        return Path((folder / SOURCE).read_text(encoding="utf-8", errors="surrogateescape"))
+    except OSError as fault:
+        raise BadInput(f"{folder}: does not say where its report is: name it with --report") from fault
+
+
 def disagreement(specs: Mapping[str, Any], edits: Sequence[Edit]) -> dict[str, Any]:
     """The number of facts that are a person's, and of those that the reading and the writers had differently."""
     given, was = effective(edits), specs.get("as_read") or {}

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import getpass
 import hashlib
-import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -27,7 +26,7 @@ from flows.case import person_facts
 from flows.case.chain import CaseRun
 from flows.case.run_case import write_run
 from flows.case_files import find_cases
-from flows.case_files.case_folder import CONFIG, CaseFolder
+from flows.case_files.case_folder import CONFIG, CaseFolder, read_json
 from flows.case_files.find_cases import Case
 from sgcad_core.asking.refine import run_at_once
 from sgcad_core.case.records import Finding
@@ -96,17 +95,10 @@ def opened(folder: Path, report: Path | None = None) -> Opened:
     former = CaseFolder(folder.parent.parent, folder.parent.name, folder.name).result()
     if former is None:
         raise BadInput(f"{folder}: no result.json in it: give the folder of a finished case, such as runs/template/x")
-    source = report or _source(folder)
+    source = report or person_facts.report_path(folder)
     if not source.exists():
         raise BadInput(f"{source}: the report of {folder.name} is gone: put it back, or name it with --report")
     return Opened(folder, source, _config(folder.parent / CONFIG), former, person_facts.read_specs(folder))
-
-
-def _source(folder: Path) -> Path:
-    try:
-        return Path((folder / person_facts.SOURCE).read_text(encoding="utf-8", errors="surrogateescape"))
-    except OSError as fault:
-        raise BadInput(f"{folder}: does not say where its report is: name it with --report") from fault
 
 
 def _config(file: Path) -> Config:
@@ -244,8 +236,7 @@ def _as_read(case: Opened, before: tuple[Edit, ...]) -> dict[str, Any] | None:
     """The specs before the first edit; None: not known here, so the chain finds them."""
     if before:
         return case.specs.as_read
-    raw: dict[str, Any] = json.loads((case.folder / person_facts.SPECS).read_text(encoding="utf-8"))
-    return raw
+    return read_json(case.folder / person_facts.SPECS)
 
 
 def _kept(case: Opened) -> dict[str, person_facts.KeptAnswers]:

@@ -61,11 +61,8 @@ class CaseFolder:
 
     def result(self) -> dict[str, Any] | None:
         """result.json of any digest; None if it is missing or cannot be read."""
-        try:
-            result = json.loads((self.path / "result.json").read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            return None
-        return result if isinstance(result, dict) and "status" in result else None
+        result = read_json(self.path / "result.json")
+        return result if "status" in result else None
 
     @contextmanager
     def writing(self) -> Iterator[Path]:
@@ -249,6 +246,15 @@ def _finite(text: str) -> float:
     if not math.isfinite(value := float(text)):
         raise ValueError(f"{text!r} is not a finite number")
     return value
+
+
+def read_json(file: Path) -> dict[str, Any]:
+    """A JSON object; empty where the file is missing, still being written or no object."""
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return content if isinstance(content, dict) else {}
 
 
 def write_json(file: Path, content: Any) -> None:

@@ -17,6 +17,7 @@ from urllib.parse import quote, urlsplit
 import psutil
 
 from flows import health
+from flows.case_files.case_folder import read_json
 from flows.health import Running
 
 FILE = "links.json"
@@ -98,11 +99,8 @@ def keep(folder: Path, found: Mapping[str, str]) -> None:
 
 def kept(folder: Path) -> dict[str, str]:
     """The links of a case's folder: known names with valid addresses only."""
-    try:
-        found = json.loads((folder / FILE).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return {name: found[name] for name in NAMES if _is_link(found.get(name))} if isinstance(found, dict) else {}
+    found = read_json(folder / FILE)
+    return {name: found[name] for name in NAMES if _is_link(found.get(name))}
 
 
 def _is_link(value: object) -> bool:

@@ -1,6 +1,6 @@
 """A study on many hosts: the checks before Prefect is imported (flows/deploy/shards.py does the rest).
 
-    hosts_preflight.run(plan(study, out), Away("s3://bucket/alpha"), on_ending)    # sgcad study alpha --hosts s3://...
+    hosts_preflight.run(plan(study, out), Hosts("s3://bucket/alpha"), on_ending)    # sgcad study alpha --hosts s3://...
 
 docs/scale.md says how to set the hosts up.
 """
@@ -12,20 +12,28 @@ from dataclasses import dataclass
 from flows.batch.track_cases import OnEnding
 from flows.server import answers
 from flows.study.plan import Plan
+from flows.study.shard_lease import BEAT_S
+from flows.study.watch_shards import PATIENCE_S, START_S
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
 
+DEPLOYMENT = "shard/shard"
+
 
 @dataclass(frozen=True)
-class Away:
-    """Shared storage of the hosts (an fsspec address that all of them reach) and the deployment that they serve."""
+class Hosts:
+    """Options of a study on many hosts: shared storage, deployment, shards and time limits (None: the defaults)."""
 
     address: str
-    deployment: str = "shard/shard"
+    deployment: str = DEPLOYMENT
     shards: int | None = None
+    jobs: int | None = None
+    beat_s: float = BEAT_S
+    patience_s: float = PATIENCE_S
+    start_s: float = START_S
 
 
-def run(plan: Plan, away: Away, on_ending: OnEnding) -> list[str]:
+def run(plan: Plan, hosts: Hosts, on_ending: OnEnding) -> list[str]:
     """Run a study on the hosts that serve the deployment; the shards submitted again, with reasons.
 
     Raises ConfigError, MissingTool (no server, no storage), KeyboardInterrupt; marked cases stay finished.
@@ -41,9 +49,9 @@ def run(plan: Plan, away: Away, on_ending: OnEnding) -> list[str]:
             f"--hosts needs a Prefect server that every host reaches, and {said}: export PREFECT_API_URL=http://.../api"
         )
     settings.quiet_libraries()
-    from flows.deploy.shards import Hosts, study_on_hosts
+    from flows.deploy.shards import study_on_hosts
 
-    return study_on_hosts(plan, Hosts(away.address, away.deployment, away.shards), on_ending)
+    return study_on_hosts(plan, hosts, on_ending)
 
 
 def resubmitted_lines(again: list[str]) -> str:

@@ -32,15 +32,15 @@ from flows.batch.plan_batch import Job
 from flows.batch.prefect_case_task import threads
 from flows.batch.track_cases import OnEnding
 from flows.case.run_case import Ending
+from flows.deploy.hosts_preflight import DEPLOYMENT, Hosts
 from flows.study.plan import Plan
 from flows.study.shard_lease import BEAT_S
 from flows.study.shards import Shard, lay_out, run_shard, shard_job
 from flows.study.shared_storage import Mark, SharedFolder, Unreachable
-from flows.study.watch_shards import PATIENCE_S, START_S, ShardWatch, watch_until_done
+from flows.study.watch_shards import ShardWatch, watch_until_done
 from flows.study.watch_shards import State as Standing
 from sgcad_core.errors import ConfigError
 
-DEPLOYMENT = "shard/shard"
 THREADS = 64
 """Threads of a shard's flow run, the limit of `jobs`."""
 POLL_S = 2.0
@@ -148,19 +148,6 @@ def _standing(state: Any) -> Standing:
 
 def _words(state: Any) -> str:
     return f"{state.name}: {state.message or ''}" if state else ""
-
-
-@dataclass(frozen=True)
-class Hosts:
-    """Options of a study on many hosts: shared storage, deployment, shards and time limits (None: the defaults)."""
-
-    address: str
-    deployment: str = DEPLOYMENT
-    shards: int | None = None
-    jobs: int | None = None
-    beat_s: float = BEAT_S
-    patience_s: float = PATIENCE_S
-    start_s: float = START_S
 
 
 def study_on_hosts(made: Plan, hosts: Hosts, on_ending: OnEnding) -> list[str]:

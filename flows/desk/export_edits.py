@@ -95,8 +95,8 @@ def mended(runs: Path, left: list[str]) -> Iterator[Mended]:
 def _edits(folder: Path) -> tuple[Edit, ...]:
     """The facts beside the report of a case; () where the report was moved: the values are in the result."""
     try:
-        source = Path((folder / person_facts.SOURCE).read_text(encoding="utf-8", errors="surrogateescape"))
-    except OSError:
+        source = person_facts.report_path(folder)
+    except BadInput:
         return ()
     return effective(read_edits(facts_file(source)))
 

@@ -87,11 +87,8 @@ def _digest(content: str, entry: DriverEntry, order: Order, ego: str, role: str)
 
 
 def _done(target: Path, digest: str) -> dict[str, Any] | None:
-    try:
-        told = json.loads((target / "drive.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return told if isinstance(told, dict) and told.get("digest") == digest else None
+    told = case_folder.read_json(target / "drive.json")
+    return told if told.get("digest") == digest else None
 
 
 def _drive_one(

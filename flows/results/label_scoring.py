@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from flows.case_files.case_folder import read_json
 from flows.results.reading import made_of, paths_of
 from sgcad_core.errors import BadInput, InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
@@ -60,7 +61,7 @@ def score(
     for case, raw in _files(truth, only):
         if "network" not in raw:
             raise BadInput(f"{truth}/{case}.json: no label (it lacks `network`); --labels takes those of a course")
-        result = _result(runs / case)
+        result = read_json(runs / case / "result.json")
         _add(marks, case, {"generated": [float(result.get("status") == "generated")]})
         _add(marks, case, {f: [m] for f, m in compare(raw, made_of(runs / case, result)).items()})
     told, agreement = _labels(labels, second, only)
@@ -100,18 +101,9 @@ def _files(folder: Path | None, only: str) -> Iterator[tuple[str, dict[str, Any]
         yield file.stem, raw
 
 
-def _result(folder: Path) -> dict[str, Any]:
-    """A case's result; empty where it left none."""
-    try:
-        found = json.loads((folder / "result.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return found if isinstance(found, dict) else {}
-
-
 def _crash(folder: Path) -> Crash | None:
     """The crash of a generated case; None if missing or unreadable."""
-    result = _result(folder)
+    result = read_json(folder / "result.json")
     try:
         if result.get("status") != "generated":
             return None

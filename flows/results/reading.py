@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from flows.case_files.case_folder import read_json
 from flows.results.levels import level_of
 from sgcad_core.case.records import Finding, Stage
 from sgcad_core.errors import ConfigError, InvalidOutput
@@ -99,9 +100,9 @@ class Study:
     def _finished(self, arm: str) -> Iterator[FinishedCase]:
         for case in self.cases:
             folder = self.folder / arm / case
-            result = _json(folder / "result.json")
+            result = read_json(folder / "result.json")
             if result and "status" in result:
-                yield FinishedCase(arm, case, folder, result, _json(folder / "metrics.json"))
+                yield FinishedCase(arm, case, folder, result, read_json(folder / "metrics.json"))
 
 
 # ------------------------------------------------------------------ the study
@@ -172,7 +173,7 @@ def _labels(truth: Path, cases: Sequence[str]) -> Iterator[tuple[str, Mapping[st
         file = truth / f"{case}.json"
         if not file.is_file():
             continue
-        label = _json(file)
+        label = read_json(file)
         if "network" not in label:
             raise ConfigError(f"{file}: no label (a JSON object with `network`); correct it or give another --truth")
         yield case, label
@@ -213,12 +214,3 @@ def paths_of(folder: Path, result: Mapping[str, Any]) -> dict[str, Motion]:
 def _attempt(place: Path) -> AttemptSeen:
     findings = json.loads((place / "findings.json").read_text(encoding="utf-8"))
     return AttemptSeen(_STAGES[place.name.rpartition("-")[0]], tuple(Finding(**f) for f in findings))
-
-
-def _json(file: Path) -> dict[str, Any]:
-    """A JSON object; empty where the file is not there or still being written."""
-    try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return content if isinstance(content, dict) else {}

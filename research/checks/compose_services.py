@@ -247,17 +247,8 @@ def postgres(stage: Stage, service: Mapping[str, Any]) -> Iterator[None]:
             time.sleep(0.2)
         address = f"postgresql://{environment['POSTGRES_USER']}:{environment['POSTGRES_PASSWORD']}@127.0.0.1:{port}"
         first, second = f"CREATE DATABASE {environment['POSTGRES_DB']}", settings.ROOT / "deploy" / "databases.sql"
-        create = [
-            str(programs / "psql"),
-            f"{address}/postgres",
-            "-v",
-            "ON_ERROR_STOP=1",
-            "-c",
-            first,
-            "-f",
-            str(second),
-        ]
-        subprocess.run(create, check=True, capture_output=True)  # noqa: S603 - PostgreSQL's own program
+        psql = [str(programs / "psql"), f"{address}/postgres", "-v", "ON_ERROR_STOP=1"]
+        subprocess.run([*psql, "-c", first, "-f", str(second)], check=True, capture_output=True)  # noqa: S603 - PostgreSQL's own program
         yield
     finally:
         _end(process)

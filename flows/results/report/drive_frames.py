@@ -1,15 +1,15 @@
-"""Script and drive side by side: one crash at a few moments, a row a driver. Knows matplotlib and run folders.
+"""Script and drive side by side: one crash at a few moments, one row per driver.
 
 Both clocks begin at the hand-over, so both frames of a pair show the same second.
 """
 
 from __future__ import annotations
 
-import json
 import textwrap
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from flows.case_files.case_folder import read_json
 from flows.player.overview_png import GROUND, RED
 from flows.results.reading import FinishedCase, paths_of
 from flows.results.report.axes import SIDE_IN, bare, car, look, say, star, under
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
 MOST_ROWS = 6
 MOMENTS_S = (-1.5, 0.0, 1.0)
-"""From the contact that the ego has in the script."""
+"""Seconds from the contact that the ego has in the script."""
 NEAR_M = 24.0
 COLORS = {"avoided": "#1b7f4d", "mitigated": "#7a4d00", "unchanged": "#66707a"}
 BAD = "#c4203a"
 
 
 def drive_frames(tables: Tables) -> list[Plot]:
-    """A figure a role of the study's drives; none where the study handed nothing over."""
+    """One figure per role of the study's drives; none without drives."""
     drives = [d for d in drives_of(tables.study) if (d.folder / "trajectories.csv").is_file() and d.ego]
     return [
         _frames(tables, role, [d for d in drives if d.role == role]) for role in dict.fromkeys(d.role for d in drives)
@@ -45,7 +45,7 @@ def _frames(tables: Tables, role: str, drives: Sequence[StudyDrive]) -> Plot:
     figure = canvas(SIDE_IN * 0.86 * wide + 2.2, SIDE_IN * len(rows) + 0.4)
     grid = figure.subplots(len(rows), wide + 1, squeeze=False, width_ratios=(2.0, *[SIDE_IN] * wide))
     for axes, drive in zip(grid, rows, strict=True):
-        ran, told = tables.study.ran[drive.arm][case], _told(drive)
+        ran, told = tables.study.ran[drive.arm][case], read_json(drive.folder / "drive.json")
         _words(axes[0], tables.study.arm(drive.arm).label, drive, told)
         _pairs(axes[1:], ran, drive, told)
     for k, axes in enumerate(grid[0][1:]):
@@ -55,14 +55,6 @@ def _frames(tables: Tables, role: str, drives: Sequence[StudyDrive]) -> Plot:
         "script has. Of all cases the one on which the drivers differ most; the others are behind the table's letters."
     )
     return Plot(f"drives_{role}", f"Script and drive side by side: the {role}", caption, as_png(figure))
-
-
-def _told(drive: StudyDrive) -> Mapping[str, Any]:
-    try:
-        told = json.loads((drive.folder / "drive.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return told if isinstance(told, dict) else {}
 
 
 def _words(axes: Axes, label: str, drive: StudyDrive, told: Mapping[str, Any]) -> None:

@@ -25,12 +25,12 @@ def test_hosts_need_a_server_that_answers(made, monkeypatch, url, tmp_path):
     monkeypatch.setenv("PREFECT_API_URL", url)
     monkeypatch.setenv("PREFECT_HOME", str(tmp_path))
     with pytest.raises(MissingTool, match="a Prefect server that every host reaches"):
-        hosts_preflight.run(made(), hosts_preflight.Away("memory://x"), lambda *_: None)
+        hosts_preflight.run(made(), hosts_preflight.Hosts("memory://x"), lambda *_: None)
 
 
 def test_a_fresh_study_wants_a_fresh_address(made):
-    with pytest.raises(ConfigError, match="give --hosts a new one"):
-        hosts_preflight.run(made(fresh=True), hosts_preflight.Away("memory://x"), lambda *_: None)
+    with pytest.raises(ConfigError, match="give --hosts another address"):
+        hosts_preflight.run(made(fresh=True), hosts_preflight.Hosts("memory://x"), lambda *_: None)
 
 
 def test_shards_that_were_submitted_again_are_told():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from flows.results.arm_displacement import apart, displacements_from
+from flows.results.arm_displacement import displacement_between, displacements_from
 from flows.results.measures import NETWORK_WRONG
 from flows.results.reading import load_study
 from flows.results.report import scenes
@@ -87,7 +87,7 @@ def test_a_slower_approach_is_displaced_by_what_it_lacks(study):
     folder = study({"a": {"c1": {}}, "b": {"c1": {}}})
     moved(folder / "b" / "c1", 0.0, 0.0, faster=0.5)
     read = load_study(folder)
-    error = apart(read.ran["a"]["c1"], read.ran["b"]["c1"])
+    error = displacement_between(read.ran["a"]["c1"], read.ran["b"]["c1"])
     # V1 covers 16 m in the 1.6 s before contact, then 8 m; V2 stands: half of it on average of the two
     assert error.final_m == pytest.approx(4.0, abs=1e-3)
     assert error.average_m == pytest.approx(2.0, abs=1e-3)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from flows import memory_check
+from flows import catalogue
 from plugins.backbone.hf_size import weights_gb
 from sgcad_core.config import load
 
@@ -35,6 +35,10 @@ def test_a_folder_is_weighed(tmp_path):
 
 def test_two_large_cards_hold_what_a_laptop_does_not():
     config = load("qwen2_5_vl_72b.yaml")
-    assert memory_check.told(config, CARDS) == ""
-    assert "there is no graphics card, and 17 GB of memory; try --set" in memory_check.told(config, LAPTOP)
-    assert memory_check.told(load("mini.yaml"), LAPTOP) == memory_check.told(load("template.yaml"), LAPTOP) == ""
+    assert catalogue.memory_warning(config, CARDS) == ""
+    assert "there is no graphics card, and 17 GB of memory; try --set" in catalogue.memory_warning(config, LAPTOP)
+    assert (
+        catalogue.memory_warning(load("mini.yaml"), LAPTOP)
+        == catalogue.memory_warning(load("template.yaml"), LAPTOP)
+        == ""
+    )
