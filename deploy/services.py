@@ -37,7 +37,7 @@ class Service:
 
 @dataclass(frozen=True)
 class Ports:
-    """Where the services listen; the worker's answers health checks only."""
+    """Ports of the services; the worker's answers health checks only."""
 
     server: int = 4200
     mlflow: int = 5000

@@ -86,7 +86,7 @@ class Server:
         )
 
     def ended(self) -> str:
-        """How the process ended by itself; empty while it runs."""
+        """Description of the process's end; empty while it runs."""
         if (code := self.process.poll()) is None:
             return ""
         return f"was killed by signal {-code}" if code < 0 else f"ended with code {code}"
@@ -117,7 +117,7 @@ def prefect_server() -> Iterator[Server | None]:
     """Name a fresh server to Prefect while the block lasts; None if the user has named one that answers.
 
     Enter it before prefect is imported. Call `wait` on the server before the first flow. Raises MissingTool
-    if the user's server does not answer, ServerLost where the block fails because ours has ended.
+    if the user's server does not answer, ServerLost where the block fails because that server has ended.
     """
     if url := settings.prefect_url():
         if not answers(url):

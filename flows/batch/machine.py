@@ -50,7 +50,7 @@ def _asked(command: list[str]) -> list[str]:
     if program is None:
         return []
     try:
-        done = subprocess.run(  # noqa: S603 - a program on the user's path with words of ours
+        done = subprocess.run(  # noqa: S603 - a program on the user's path with fixed arguments
             [program, *command[1:]], cwd=settings.ROOT, capture_output=True, text=True, timeout=ASK_S, check=False
         )
     except (OSError, subprocess.TimeoutExpired):

@@ -117,7 +117,7 @@ def case_reporter(lasting: bool) -> Iterator[CaseReporter]:
 
 
 def _pages() -> str:
-    """Where Prefect's pages are served."""
+    """Address of Prefect's pages."""
     return str(PREFECT_UI_URL.value() or (PREFECT_API_URL.value() or "").removesuffix("/api")).rstrip("/")
 
 

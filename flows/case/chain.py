@@ -118,7 +118,7 @@ class CaseRun:
         return both
 
     def _both(self, report: CrashReport) -> tuple[Scenario, RoadNetwork] | None:
-        """Both stages of a report as it is read."""
+        """Write the road and the scenario of a report; None if one of them was not written."""
         passages = self._passages(report, "road")
         network = self._stage(self._road(report, passages), report, passages)
         if isinstance(network, RoadNetwork):

@@ -77,7 +77,7 @@ class Opened:
 
     @property
     def file(self) -> Path:
-        """Where its facts are kept."""
+        """Path of the report's facts.yaml."""
         return facts_file(self.source)
 
     def edits(self) -> tuple[Edit, ...]:
@@ -247,7 +247,7 @@ def _kept(case: Opened) -> dict[str, person_facts.KeptAnswers]:
 
 
 def _findings(run: CaseRun) -> list[Finding]:
-    """What validators say of the attempts that stand, and the planner's notes."""
+    """Findings of the valid attempts, and the planner's notes."""
     told = [attempt for outcome in run.outcomes.values() if (attempt := outcome.told_by)]
     found = [finding for attempt in told for finding in attempt.findings]
     scenario = run.record().scenario

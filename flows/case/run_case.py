@@ -1,4 +1,4 @@
-"""A case run and written to its folder: every file, result.json last, whatever the case ends with."""
+"""A case run and written to its folder: every file, result.json last, for every ending."""
 
 from __future__ import annotations
 

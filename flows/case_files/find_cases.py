@@ -173,7 +173,7 @@ def _folder_digest(folder: Path) -> str:
 
 
 def identity(plugin: Plugin) -> tuple[str, ...]:
-    """What identifies a plugin's results beside its fields: version, stamp, and the code of a foreign plugin."""
+    """Identity of a plugin's results beside its fields: version, stamp, and the code of a foreign plugin."""
     foreign_code = code_of(type(plugin))
     return (type(plugin).version, plugin.stamp, *([foreign_code] if foreign_code else []))
 
@@ -193,7 +193,7 @@ def source_digest(source: Path) -> str:
 
 
 def dataset_digest(cases: Iterable[Case]) -> str:
-    """Fingerprint of a set of cases: names and every file's content, whatever their order."""
+    """Fingerprint of a set of cases: names and every file's content, independent of their order."""
     lines = sorted(f"{case.id} {source_digest(case.source)}\n" for case in cases)
     return hashlib.sha256("".join(lines).encode("utf-8", "surrogateescape")).hexdigest()
 

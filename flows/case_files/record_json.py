@@ -57,7 +57,7 @@ def _models() -> Mapping[str, type[BaseModel]]:
 
 
 class _TurnFields(records.Record):
-    """What a Turn must hold."""
+    """Fields of a Turn."""
 
     attempt: records.Attempt
     artifact: records.RoadNetwork | records.Scenario | None
@@ -66,7 +66,7 @@ class _TurnFields(records.Record):
 
 
 class _CallFields(records.Record):
-    """What a Call must hold."""
+    """Fields of a Call."""
 
     query: records.Query
     generation: records.Generation

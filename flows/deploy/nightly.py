@@ -176,7 +176,7 @@ def _read(file: Path) -> dict[str, Any] | None:
     except FileNotFoundError:
         return None
     except ValueError as fault:
-        raise ConfigError(f"{file}: cannot be read ({fault}); remove it and accept anew") from fault
+        raise ConfigError(f"{file}: cannot be read ({fault}); remove it and accept a run again") from fault
     return about
 
 

@@ -124,7 +124,7 @@ class Place:
         return content
 
     def modified(self, name: str) -> float | None:
-        """When a file was written last, seconds since 1970; None if it is not there."""
+        """Time of a file's last change, seconds since 1970; None if it does not exist."""
         try:
             return _stamp("", self.fs.info(self.path(name))).modified
         except FileNotFoundError:
@@ -146,7 +146,7 @@ class Place:
             return True
         try:
             self.fs.pipe_file(target, content, mode="create")
-        except OSError:  # it is there, in whatever words the store says so; or a repeated request met our own first
+        except OSError:  # the file exists, or a repeated request met the first one
             if self.read(name) is None:
                 raise
         return self.read(name) == content

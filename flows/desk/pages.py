@@ -66,7 +66,7 @@ def case_page(request: Request, key: str) -> Response:
 
 
 def mending_of(desk: Desk, page: case_view.CasePage, folder: Path) -> dict[str, Any]:
-    """What the page needs to edit a case, or why it cannot be edited."""
+    """Template values for editing a case, or the reason why it cannot be edited."""
     from flows.case import revise_case
 
     nothing = {"groups": page.groups, "can_mend": False, "edits": (), "additions": (), "stamp": ""}
@@ -141,7 +141,7 @@ def _file(
     if not file.resolve().is_relative_to(desk.root) or not file.is_file():
         raise CaseGone(f"This case has no {name}.")
     try:
-        content = file.read_bytes()  # whole: a batch may write the case anew while its length is told already
+        content = file.read_bytes()  # read whole: a batch may replace the file after its length was sent
     except OSError as fault:
         raise CaseGone(f"This case has no {name} any more ({fault.strerror}).") from fault
     kept = {"Content-Disposition": f"attachment; {_named(filename)}"} if filename else {}

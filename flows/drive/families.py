@@ -154,12 +154,12 @@ def _logical(family: Family, ranges: Sequence[Range], behavior: BehaviorSpec) ->
     seen = behavior.model_copy(update={"light": LIGHTS[0]}) if lit else behavior
     text = write_xosc(nominal.actors, prolonged(nominal, back), seen, "../../road.xodr", "logical")
     text = suns(text, "light", [SUNS[light] for light in LIGHTS]) if lit else text
-    everybody = [_meets(basis, t.actor, back) for t in nominal.trajectories]
-    return logical_xosc(text, ranges, everybody, basis.contact_s)
+    motions = [_meets(basis, t.actor, back) for t in nominal.trajectories]
+    return logical_xosc(text, ranges, motions, basis.contact_s)
 
 
 def _meets(basis: Basis, actor: str, back: float) -> Meets:
-    """How an actor's motion in the logical file depends on the parameters, as `variant` has it."""
+    """Dependence of an actor's motion in the logical file on the parameters, as in `variant`."""
     who = basis.owner(actor)
     lanes = (f"{who}_lane_m", *((f"{PAIR}_lane_m",) if who in basis.coupled else ()))
     other, per_m = basis.crossed.get(who, ("", 0.0))

@@ -20,7 +20,7 @@ SIZE_IN = 6.4
 DPI = 110
 MARGIN_M = 14.0
 GHOST_S = 1.0
-"""An actor's box is drawn once every so many seconds, paler the earlier."""
+"""Time between two drawn boxes of an actor; earlier ones are paler."""
 CONE = "#ff7a1a"
 GROUND, ASPHALT, WHITE, YELLOW, RED = "#eef0ea", "#5b6067", "#f4f4f0", "#e8b93c", "#d7263d"
 LINES = {

@@ -137,9 +137,9 @@ def _across(lane: Lane) -> Floats:
 
 # ------------------------------------------------------------------ signs, arrows, crosswalks
 ARROW_M, ARROW_LANES = 7.0, 2
-"""An arrow lies so far before the end of its lane, where a road has so many lanes for cars one way."""
+"""Distance of an arrow from the end of its lane, and the number of car lanes one way from which arrows are drawn."""
 BESIDE_M = 1.2
-"""A sign stands so far to the right of the outermost lane."""
+"""Distance of a sign to the right of the outermost lane."""
 STOPPED = set("sw")
 """SUMO's states of connections behind a stop sign: one way, all ways."""
 

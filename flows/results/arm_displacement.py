@@ -41,7 +41,7 @@ def displacements_from(study: Study, reference: str | None) -> dict[str, list[Di
 
 
 def no_displacement_reason(study: Study) -> str:
-    """Why `displacements_from` is empty."""
+    """Reason why `displacements_from` is empty."""
     if len(study.arms) < 2:
         return "There is one arm and no trajectory of the real crash, so nothing to hold it against."
     return "No case touched in the reference arm and another, so arms are not held against each other."

@@ -82,7 +82,7 @@ class Study:
     reference: str | None = None
     labels: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     about: Mapping[str, Any] = field(default_factory=dict)
-    """study.json as it stands: versions, digests, hardware."""
+    """Content of study.json: versions, digests, hardware."""
 
     @cached_property
     def ran(self) -> Mapping[str, Mapping[str, FinishedCase]]:

@@ -126,7 +126,7 @@ class Shard:
     laying: str = ""
 
     def check(self) -> None:
-        """Raises LeaseLost if the study was laid out anew since this run was submitted."""
+        """Raises LeaseLost if the study was laid out again since this run was submitted."""
         plan = self.share.json(PLAN) or {}
         if self.laying and plan.get("laying") != self.laying:
             raise LeaseLost("the study was started again with other shards; this run's shard no longer exists")

@@ -53,7 +53,7 @@ class Mark:
 
     @property
     def name(self) -> str:
-        """Where the mark lies."""
+        """Address of the mark."""
         return mark_name(self.arm, self.case, self.digest, self.status == "failed")
 
 

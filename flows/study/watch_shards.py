@@ -27,7 +27,7 @@ FRUITLESS = 3
 
 
 class Pool(Protocol):
-    """Where runs are submitted."""
+    """The work pool to which runs are submitted."""
 
     def submit(self, shard: int) -> str:
         """Ask for a run of a shard; its id."""

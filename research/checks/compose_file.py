@@ -22,7 +22,7 @@ _VARIABLE = re.compile(r"\$\{(?P<name>\w+)(?::(?P<kind>[-?])(?P<text>[^}]*))?\}"
 
 
 def raw(file: Path = FILE) -> dict[str, Any]:
-    """The file as it stands, merge keys resolved, variables not."""
+    """The file's content, with merge keys resolved and variables not."""
     content: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8"))
     return content
 

@@ -60,7 +60,7 @@ class Stage:
         return self.local(text)
 
     def variables(self, name: str, service: Mapping[str, Any]) -> dict[str, str]:
-        """A service's environment, beside what programs need of ours."""
+        """A service's environment, with the variables of this process that programs need."""
         asked = {key: self.local(str(value)) for key, value in (service.get("environment") or {}).items()}
         if file := asked.get("MLFLOW_AUTH_CONFIG_PATH"):  # its folder is the volume's
             text = self.local((settings.ROOT / file).read_text(encoding="utf-8"))
@@ -83,7 +83,7 @@ QUIET = {
 
 
 def check(folder: Path) -> Iterator[str]:
-    """Start everything, telling of each service as it is well. Raises MissingTool at the first that is not."""
+    """Start all services; a line for each that is well. Raises MissingTool at the first that is not."""
     needs()
     password, key = secrets.token_hex(12), f"sgcad:{secrets.token_hex(12)}"
     stage = Stage(

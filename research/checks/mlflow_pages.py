@@ -1,4 +1,4 @@
-"""Opens MLflow's pages in headless Chromium and looks whether runs, metrics, files and traces are there.
+"""Opens MLflow's pages in headless Chromium and checks that they show runs, metrics, files and traces.
 
     python -m research.checks.mlflow_pages runs/mlflow.db [--experiment study/alpha] [--shots FOLDER] [--wait 120]
 
@@ -36,7 +36,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stab
 START_S = 180.0
 LOOK_S = 0.5
 QUIET_LOOKS = 4
-"""A page counts as painted when its text is the same at so many looks."""
+"""Number of equal looks in a row after which a page counts as painted."""
 SIZE = (1700, 950)
 TIDY = """document.querySelectorAll('button').forEach(
     b => /^(close|got it|dismiss)/i.test(b.ariaLabel || b.innerText) && b.click())"""
@@ -191,7 +191,7 @@ class Browser:
                 return result
 
     def text(self) -> str:
-        """What the page shows now: its text, titles and field values."""
+        """The text, titles and field values that the page shows now."""
         script = "[document.body.innerText, ...[...document.querySelectorAll('[title],input')].map(" \
             "e => e.title || e.value)].join('\\n')"  # fmt: skip
         said = self.call("Runtime.evaluate", expression=script, returnByValue=True)
@@ -257,7 +257,7 @@ def _tab(port: int) -> str:
 
 # ------------------------------------------------------------------ command line
 def main() -> int:
-    """Open every page and say what it lacks."""
+    """Open every page and print what it lacks; the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("database", type=Path, nargs="?", default=Path("runs/mlflow.db"))
     parser.add_argument("--experiment", default="", help="default: the one with the newest run")

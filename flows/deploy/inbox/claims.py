@@ -156,7 +156,7 @@ def _is_dead(holder: bytes) -> bool:
 
 
 def _born(pid: int) -> float:
-    """When a process began, 0 if it has ended."""
+    """Start time of a process, 0 if it has ended."""
     try:
         process = psutil.Process(pid)
         return 0.0 if process.status() == psutil.STATUS_ZOMBIE else process.create_time()

@@ -138,7 +138,7 @@ def verdict_of(result: Mapping[str, Any]) -> str:
 
 # ------------------------------------------------------------------ the report
 def spans_of(folder: Path, result: Mapping[str, Any]) -> dict[int, tuple[int, int]]:
-    """Where the sentences stand in the narrative as it is shown: their begin as it was written -> [begin, end).
+    """Positions of sentences in the shown narrative: begin in the original text -> [begin, end).
 
     The player knows it where parts of the report were taken out; else both are the same.
     """
@@ -193,7 +193,7 @@ def title_of(thing: str) -> str:
 
 
 def order_of(thing: str) -> tuple[int, str]:
-    """Where a thing stands among the others: contact, actors, junction, roads, the rest."""
+    """Sort key of a thing: contact, actors, junction, roads, the rest."""
     kind = thing.partition(":")[0]
     order = {"contact": 0, "junction": 2, "leg": 3, "road": 4, "conditions": 5, "": 6}
     return order.get(kind, 1), thing

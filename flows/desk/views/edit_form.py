@@ -86,7 +86,7 @@ def _row(row: FactRow, field: CaseField, edit: Edit | None, findings: Findings) 
 
 
 def _asked(field: CaseField) -> str:
-    """How a page asks for the field, as JSON."""
+    """Description of a field's input for the page, as JSON."""
     kind = field.kind
     value = list(field.value) if isinstance(field.value, tuple) else field.value
     asked: dict[str, Any] = {

@@ -95,7 +95,7 @@ def account_counts(result: Mapping[str, Any]) -> dict[str, int]:
 
 
 def notes_of(result: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """What every step remarked: {"kind", "field", "subject", "text", ...}; plain lines of older results too."""
+    """Notes of all steps: {"kind", "field", "subject", "text", ...}; also plain lines of older results."""
     return [dict(note) if isinstance(note, Mapping) else {"kind": "plan", "field": "", "subject": "", "text": str(note)}
             for note in result.get("notes") or ()]  # fmt: skip
 
@@ -121,7 +121,7 @@ def confidence_of(facts: Iterable[Mapping[str, Any]]) -> float | None:
 
 
 def kind_of(result: Mapping[str, Any]) -> str:
-    """What kind of crash is declared, in a word or two; "" where none is."""
+    """Kind of the declared crash in a word or two; "" where none is declared."""
     if near := result.get("near_crash"):
         return f"near crash, {_pair(near['declared']['conflict'], {})}"
     declared = (result.get("collision") or {}).get("declared")
@@ -148,7 +148,7 @@ def _pair(contact: Mapping[str, Any], maneuvers: Mapping[str, str]) -> str:
 
 
 def place_of(facts: Iterable[Mapping[str, Any]], result: Mapping[str, Any]) -> str:
-    """Where it happens: the kind of junction as read, else as written; "" where there is no network."""
+    """Kind of junction as read, else as written; "" without a network."""
     told = [fact["value"] for fact in facts if fact["field"] == "junction.kind"]
     if told:
         return _PLACES.get(told[-1], str(told[-1]).replace("_", " ")).removeprefix("a ")

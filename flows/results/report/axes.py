@@ -50,5 +50,5 @@ def car(axes: Axes, box: Box, color: str) -> None:
 
 
 def star(axes: Axes, at: tuple[float, float], color: str) -> None:
-    """Where two touch."""
+    """Draw the mark of a contact."""
     axes.plot(*at, marker=(10, 1, 0), markersize=10, color=color, markeredgecolor="white", zorder=6)

@@ -37,7 +37,7 @@ class StudyDrive(NamedTuple):
 
     @property
     def column(self) -> tuple[str, str, str]:
-        """Which column of the table it stands in."""
+        """Its column in the table: arm, driver, role."""
         return self.arm, self.driver, self.role
 
 

@@ -42,7 +42,7 @@ VERDICTS = (
 
 
 def gallery(tables: Tables, page: Path) -> dict[str, Any]:
-    """What the page's script reads. `page`: where the page will lie; links to players are relative to it."""
+    """The data for the page's script. `page`: path of the page; links to players are relative to it."""
     study = tables.study
     return {
         "arms": [{"name": a.name, "label": a.label} for a in study.arms],

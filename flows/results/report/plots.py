@@ -149,7 +149,7 @@ def _line(axes: Axes, points: list[tuple[float, list[float]]], color: str, label
 
 # ------------------------------------------------------------------ risk
 def risk(tables: Tables) -> Plot:
-    """Levels of S_e by arm in both readings, the published distribution below ours where an arm names one."""
+    """Levels of S_e by arm in both readings, the published distribution below them where an arm names one."""
     title = "Risk distribution"
     arms = [a for a in tables.study.arms if any("x_critical" in v for v in tables.values[a.name].values())][:MOST_ARMS]
     if not arms:
@@ -168,7 +168,7 @@ def risk(tables: Tables) -> Plot:
             ]
         _stack(axes, rows)
     figure.axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, fontsize=8, frameon=False)
-    caption = "Share of generated scenarios at each level of the emergency score S_e. Hatched: published, not ours."
+    caption = "Share of generated scenarios at each level of the emergency score S_e. Hatched: published values."
     return Plot("risk", title, caption, as_png(figure))
 
 

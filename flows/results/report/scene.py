@@ -33,13 +33,13 @@ class Scene:
 
     @staticmethod
     def box(path: Path, t_s: float) -> Box:
-        """Where an actor is, at the step nearest to a time."""
+        """Box of an actor at the step nearest to a time."""
         x, y, heading = (float(v) for v in path.pose[int(np.abs(path.t_s - t_s).argmin())])
         return Box(x, y, heading, *path.size)
 
     @property
     def middle(self) -> tuple[float, float]:
-        """Where to look: the contact, else the middle of all paths; metres."""
+        """Middle of the picture: the contact, else the middle of all paths; meters."""
         if self.contact_s is not None:
             return self.contact_at
         low, high = self._bounds()

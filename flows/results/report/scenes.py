@@ -113,7 +113,7 @@ def _truth(axes: Axes, label: Mapping[str, Any] | None) -> None:
 
 
 def _truth_words(label: Mapping[str, Any]) -> str:
-    """What a coded label states of the road."""
+    """The statements of a coded label on the road."""
     network = label["network"]
     told = [f"junctions: {network.get('intersections')}", str(network.get("layout_best") or "").replace("_", " ")]
     told += [f"{r.get('vehicle')}: {r['lanes_total']} lanes" for r in network.get("roads", ()) if r.get("lanes_total")]
