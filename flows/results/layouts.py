@@ -56,8 +56,8 @@ LAYOUTS = (
         "cases; TTC and PET of the cases that have one. Not comparable with published values.", m.EXACT,
     ),
     Layout(
-        "conflict", "Conflict figures of the scripted crashes", "Of generated cases with contact, in the script "
-        "without reaction. TTC-1s, DRAC-1s: a second before the contact; exposed: time with TTC < 1.5 s; delta-v: the larger "
+        "conflict", "Conflict figures of the scripted crashes", "Of generated cases with contact, in a script "
+        "without reaction. TTC-1s, DRAC-1s: 1 s before contact; exposed: time with TTC < 1.5 s; delta-v: the larger "
         "of both; death: risk; brake by, steer by: the last moment at which it still avoids, of the actor that had to "
         "act first. Drives by drivers stand in the tables of `sgcad drive`.",
         m.CONFLICT,

@@ -146,8 +146,8 @@ def test_doctor_looks_no_further_where_it_cannot_write(tmp_path):
     ended = sgcad("doctor", "--out", "/proc/runs", PREFECT_HOME="/proc/prefect")
     assert ended.returncode == 1
     assert "wrong output: --out /proc/runs: cannot be written" in ended.stdout
-    assert "not looked at flow: mend home, output first" in ended.stdout
-    assert "not looked at tracking: mend output first" in ended.stdout
+    assert "not checked flow: repair home, output first" in ended.stdout
+    assert "not checked tracking: repair output first" in ended.stdout
 
 
 def test_a_config_that_is_no_yaml_is_named(here, reports, tmp_path):
@@ -290,7 +290,7 @@ def test_a_tracker_that_fails_costs_no_case_and_the_next_run_logs(server, report
     broken = config_file(tracker={"name": "testkit", "file": str(log), "raises": True})
     ended = sgcad("evaluate", folder, "--config", broken, "--out", tmp_path / "out")
     assert ended.returncode == 0
-    assert "2 not logged, run again to log them; kit/" in ended.stdout
+    assert "2 not logged; run the same command again to log them; kit/" in ended.stdout
     mended = config_file(tracker={"name": "testkit", "file": str(log)})
     for _ in range(2):
         assert sgcad("evaluate", folder, "--config", mended, "--out", tmp_path / "out").returncode == 0
@@ -386,7 +386,7 @@ def test_a_batch_whose_prefect_server_is_killed_ends_under_another(server, repor
         _server_of(process).kill()
         said, complaints = process.communicate(timeout=200)
     assert process.returncode == 0, complaints
-    assert "Prefect's server was killed by signal 9; now another is started" in complaints
+    assert "Prefect's server was killed by signal 9; another one is started" in complaints
     assert "Traceback" not in complaints
     assert statuses(out) == {"a": "generated", "b": "generated", "c": "generated"}
     row = next(line for line in said.splitlines() if line.split()[:1] == ["kit"]).split()

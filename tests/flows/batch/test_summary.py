@@ -72,8 +72,8 @@ def test_a_long_batch_keeps_little_of_a_result():
 def test_an_ending_is_taken_once_and_its_steps_are_counted(reused, steps):
     board = TaskBoard({}, runner=None)
     board.endings["kit/a"] = Ending({}, reused=reused, steps=(Step("read", 0.0, 1.0), Step("road", 1.0, 2.0)))
-    board.graphs["kit/a"] = StepRuns("flow", "task", every=True)
+    board.step_runs["kit/a"] = StepRuns("flow", "task", every=True)
     ending, _ = board.take("kit/a")
     assert (ending.reused, board.steps) == (reused, steps)
     assert not board.endings
-    assert not board.graphs
+    assert not board.step_runs

@@ -137,7 +137,10 @@ def test_a_tracker_that_cannot_be_told_ends_no_batch_and_is_told_again(plan, tol
     jobs = [Job(j.config.model_copy(update={"tracker": broken}), j.case, j.digest, j.folder) for j in plan]
     with track_cases.tracked_batch(jobs):
         pass
-    assert "keeps the tracker's database locked: end it (`fuser FILE` names it); then run again" in caplog.text
+    assert (
+        "keeps the tracker's database locked: end it (`fuser FILE` names it); then run the same command again"
+        in caplog.text
+    )
     assert not any(track_cases.tracked(job) for job in jobs)
 
 

@@ -226,5 +226,5 @@ def test_what_was_mended_is_exported_as_truth_that_the_mended_run_meets(tmp_path
 
 
 def test_nothing_mended_is_nothing_to_export(tmp_path, case):
-    with pytest.raises(BadInput, match="nobody has changed a fact"):
+    with pytest.raises(BadInput, match="no fact of these cases was changed"):
         export_edits.export(case.parent, tmp_path / "data")

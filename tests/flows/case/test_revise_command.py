@@ -15,7 +15,7 @@ def sgcad(*words):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["revise", "nowhere"], "give --set FIELD=VALUE"),
+        (["revise", "nowhere"], "give one of --set FIELD=VALUE"),
         (["revise", "nowhere", "--set", "x"], "expected FIELD=VALUE"),
         (["revise", "nowhere", "--set", "near_crash=true"], "give the folder of a finished case"),
         (["revise", "nowhere", "--undo", "--list"], "one of the three"),

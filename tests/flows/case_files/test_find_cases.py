@@ -112,7 +112,7 @@ def test_a_missing_report_is_named(tmp_path):
 
 
 def test_an_empty_folder_and_a_missing_one_are_refused(tmp_path):
-    with pytest.raises(ConfigError, match="no case in it; put each report into a folder of its own"):
+    with pytest.raises(ConfigError, match="it contains no case; put each report into a folder of its own"):
         cases_in([tmp_path])
     with pytest.raises(ConfigError, match="no such folder"):
         cases_in([tmp_path / "nowhere"])

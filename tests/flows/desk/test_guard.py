@@ -161,6 +161,6 @@ def test_a_wrong_folder_a_case_and_a_taken_port_are_told_with_their_remedy(folde
     assert (code, f"is one case; give the results folder above it, such as {folder}" in said) == (2, True)
     with socket.create_server(("127.0.0.1", 0)) as taken:
         code, said = desk_says(folder, "--port", taken.getsockname()[1])
-    assert (code, "--port 0 takes a free one" in said) == (2, True)
+    assert (code, "--port 0 selects a free port" in said) == (2, True)
     code, said = desk_says(folder, "--mlflow", "javascript:alert(1)")
     assert (code, "no web address" in said) == (2, True)

@@ -46,7 +46,7 @@ def test_an_edit_is_planned_simulated_shown_signed_and_taken_back(page, key, con
     assert page(key).change("undo").status_code == 200
     assert lanes(config, "N") == 3
     assert "Changed by people" not in page(key).text
-    assert page(key).change("undo").json()["text"].endswith("nobody has changed a fact of it")
+    assert page(key).change("undo").json()["text"].endswith("none of its facts was changed")
 
 
 @pytest.mark.slow

@@ -78,5 +78,5 @@ def test_a_faulty_config_claims_nothing(config_file, tmp_path):
 def test_an_address_of_no_kind_is_told(config_file, tmp_path):
     from flows.deploy.inbox.inbox import inbox_flow
 
-    with pytest.raises(ConfigError, match="nowhere://here: no address that can be opened"):
+    with pytest.raises(ConfigError, match="nowhere://here: cannot be opened"):
         inbox_flow.fn("nowhere://here", str(config_file()), str(tmp_path / "out"))
