@@ -39,5 +39,5 @@ def test_another_study_of_that_name_begins_anew(begun, tmp_path):
 def test_cases_that_are_gone_are_told(begun, tmp_path):
     shutil.rmtree(tmp_path / "cases")
     known = resume.former_arguments(Path("kits"), tmp_path / "out")
-    with pytest.raises(ConfigError, match=r"the study was begun with .*cases, which is gone: name the folder"):
+    with pytest.raises(ConfigError, match=r"the study was started with .*cases, which is gone: name the folder"):
         resume.cases_of(known, ())
