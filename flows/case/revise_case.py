@@ -206,9 +206,7 @@ def _unchanged(edits: tuple[Edit, ...], seen: str | None) -> tuple[Edit, ...]:
     if seen is None or seen == stamp_of(edits):
         return edits
     last = f"{edits[-1].who or 'a person'} changed {edits[-1].field}" if edits else "the last edit was undone"
-    raise WrongEdit(
-        f"the facts of this case have changed meanwhile ({last}): load the case again, then repeat the change"
-    )
+    raise WrongEdit(f"the facts of this case have changed meanwhile ({last}): load it again, then repeat the change")
 
 
 # ------------------------------------------------------------------ running
