@@ -1,6 +1,6 @@
 "use strict";
-// Mending: an editor at the fact, vehicles dragged to another lane, undo, run again. A refused change says why, at its
-// field where it concerns one; the page then stays as it was.
+// Editing: an editor at each fact, vehicles dragged to another lane, undo, run again. A refused change shows its reason at
+// its field, or above the facts; the page then stays as it was.
 (() => {
   const $ = (id) => document.getElementById(id);
   const desk = window.desk;

@@ -59,7 +59,7 @@ function choose() {
   byId("count").textContent = shown.length === data.cases.length ? `${shown.length} cases` : `${shown.length} of ${data.cases.length} cases`;
   byId("gallery").replaceChildren();
   made = 0;
-  if (!shown.length) byId("gallery").append(element("p", "empty", "No case fits."));
+  if (!shown.length) byId("gallery").append(element("p", "empty", "No case matches the filters."));
   more();
 }
 
