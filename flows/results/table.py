@@ -5,13 +5,14 @@ Measured and published figures are in separate fields of a cell.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from flows.results.layouts import LAYOUTS, Layout
-from flows.results.levels import LABELS
+from flows.results.levels import LABELS, SHOULD_REFUSE, base_of
 from flows.results.measures import Measure, study_values
 from flows.results.reading import Arm, Study
 from flows.study.published import Published, publication
@@ -19,6 +20,16 @@ from sgcad_core.case.records import Floats
 from sgcad_core.metrics import statistics
 from sgcad_core.metrics.statistics import Interval
 
+REFUSAL_MEASURES = (
+    Measure("refusal_precision", "refusal precision", "ratio", "%", "high", ("rightly", "refusals")),
+    Measure("refusal_recall", "refusal recall", "ratio", "%", "high", ("rightly", "due")),
+    Measure("wrongly_refused", "refused though evidence carries", "ratio", "%", "low", ("wrongly", "carried")),
+)
+REFUSAL_NOTE = (
+    "Precision: of the refused runs, those at levels that should end in a refusal "
+    f"({', '.join(sorted(SHOULD_REFUSE)).replace('_', ' ')}). Recall: of the runs at those levels, the refused ones. "
+    "Exhausted and failed runs are no refusals. Intervals draw whole cases, with all their levels."
+)
 Values = Mapping[str, Mapping[str, Mapping[str, float]]]
 """arm -> case -> measure key -> value."""
 
@@ -180,19 +191,37 @@ def _p(
 # ------------------------------------------------------------------ refusals
 def _refusals(study: Study, values: Values) -> Table | None:
     """Refusal precision and recall of each system over its robustness levels, cases resampled whole."""
-    from flows.results.refusal import MEASURES, NOTE, systems
-
     rows = []
-    for label, arms in systems(study):
+    for label, arms in _systems(study):
         cases = {case: v for case in study.cases if (v := _refused(case, arms, values))}
-        cells = {m.name: _cell(cases, m, None, None) for m in MEASURES}
+        cells = {m.name: _cell(cases, m, None, None) for m in REFUSAL_MEASURES}
         done = sum(len(values[arm.name]) for arm in arms)
         rows.append(Row(label, label, done, len(arms) * len(study.cases), cells, {}))
-    return Table("refusals", "Refusals over all levels", NOTE, MEASURES, tuple(rows)) if rows else None
+    return Table("refusals", "Refusals over all levels", REFUSAL_NOTE, REFUSAL_MEASURES, tuple(rows)) if rows else None
 
 
 def _refused(case: str, arms: Sequence[Arm], values: Values) -> dict[str, float]:
-    from flows.results.refusal import counts
-
     seen = [(arm.level or "", values[arm.name][case]["refused"]) for arm in arms if case in values[arm.name]]
-    return counts(seen)
+    return refusal_counts(seen)
+
+
+def _systems(study: Study) -> Iterator[tuple[str, list[Arm]]]:
+    """Arms that differ only in their level, by system; systems with one level are left out."""
+    found = defaultdict(list)
+    for arm in study.arms:
+        if arm.level:
+            found[base_of(arm.config, arm.factors, arm.overrides)].append(arm)
+    for base, arms in found.items():
+        if len({arm.level for arm in arms}) > 1:
+            yield " ".join(base) or arms[0].label, arms
+
+
+def refusal_counts(refused_at: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """One case's sums over its levels, from (level, 1 if refused)."""
+    found = dict.fromkeys(("rightly", "wrongly", "refusals", "due", "carried"), 0.0)
+    for level, refused in refused_at:
+        due = level in SHOULD_REFUSE
+        found["due" if due else "carried"] += 1
+        found["refusals"] += refused
+        found["rightly" if due else "wrongly"] += refused
+    return found
