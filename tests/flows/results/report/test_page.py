@@ -58,7 +58,7 @@ def test_the_gallery_holds_what_a_case_came_to(tables, tmp_path):
     assert (first["status"], first["declared"], second["declared"]) == ("generated", True, False)
     assert first["player"] == "a/c1/player.html"
     right = dict(zip(data_of(text)["verdicts"], first["right"], strict=True))
-    assert right["intersections"] == right["who touches"] == right["sides"] == 1
+    assert right["intersections"] == right["contact pair"] == right["sides"] == 1
     assert right["lanes total"] is None
     assert cases[1]["arms"] == [cases[1]["arms"][0], None]
     assert "refused for a reason" in cases[1]["arms"][0]["why"]
