@@ -36,7 +36,7 @@ def test_a_taken_port_is_named_and_nothing_starts(tmp_path):
 def test_down_where_nothing_runs_ends_nothing(tmp_path, capsys):
     assert local.down(tmp_path) == []
     assert local.main(["status", "--out", str(tmp_path)]) == 0
-    assert "nothing was started here" in capsys.readouterr().out
+    assert "no service was started here" in capsys.readouterr().out
 
 
 def test_a_service_that_ended_is_neither_alive_nor_well(tmp_path):
