@@ -46,7 +46,7 @@ down: ## end what `make up` started; results and logs stay
 
 check-deploy: setup ## every service started for real, and the containers' services without containers
 	SGCAD_SERVICES=1 $(BIN)/python -m pytest tests/deploy -q
-	$(BIN)/python -m deploy.check
+	$(BIN)/python -m research.checks.compose_services
 
 bench: setup ## time and share of every stage over the demo reports
 	$(BIN)/python -m research.benchmarks.services.stages
@@ -66,7 +66,7 @@ train-mini: setup ## train the embedded model (DEVICE=cpu|cuda BUDGET=seconds); 
 	@touch $@
 
 qc: .venv-qc/.ready ## ASAM's checkers over RUNS=runs
-	.venv-qc/bin/python deploy/qc.py $(or $(RUNS),runs)
+	.venv-qc/bin/python research/checks/asam_checkers.py $(or $(RUNS),runs)
 
 docs: setup ## the documentation as a site in site/, links checked
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint deploy/constraints.txt -e '.[docs]'
@@ -81,7 +81,7 @@ docs-serve: docs ## the same at http://127.0.0.1:8000, rebuilt while you write
 	@touch $@
 
 lock: setup ## deploy/requirements.lock: every package of the image with version and digest
-	$(BIN)/python -m deploy.lock
+	$(BIN)/python -m research.checks.write_lock
 
 licenses: setup .venv-tools/.ready ## licenses.csv: every installed package with version and licence
 	.venv-tools/bin/pip-licenses --python $(BIN)/python --format csv --with-urls --output-file licenses.csv
@@ -90,7 +90,7 @@ sbom: setup .venv-tools/.ready ## sbom.json: every installed package, in Cyclone
 	.venv-tools/bin/cyclonedx-py environment $(BIN)/python --output-file sbom.json
 
 pages: setup ## headless Chromium looks at MLflow's pages (DATABASE=runs/mlflow.db EXPERIMENT=study/alpha SHOTS=folder)
-	$(BIN)/python deploy/pages.py $(or $(DATABASE),runs/mlflow.db) $(if $(EXPERIMENT),--experiment $(EXPERIMENT)) $(if $(SHOTS),--shots $(SHOTS))
+	$(BIN)/python -m research.checks.mlflow_pages $(or $(DATABASE),runs/mlflow.db) $(if $(EXPERIMENT),--experiment $(EXPERIMENT)) $(if $(SHOTS),--shots $(SHOTS))
 
 clean: ## remove environments and caches, never results
 	rm -rf $(VENV) .venv-qc .venv-tools site .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

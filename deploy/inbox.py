@@ -1,6 +1,6 @@
-"""The inbox of one machine while its services run: where it lies, watched from the first minute, let go at the end.
+"""The inbox of one machine while its services run: its address, and the start and end of its watching run.
 
-Knows Prefect's HTTP interface; no Prefect.
+Uses Prefect's HTTP interface.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Any
 
 import httpx
 
-from flows.deploy import health
+from flows import health
 from flows.deploy.defaults import inbox_address
 from flows.deploy.storage import Place
 from sgcad_core import settings
@@ -30,19 +30,19 @@ def place() -> str:
 
 
 def begin(api: str) -> None:
-    """Start a run that watches the inbox now, unless one does; else the first would start up to ten minutes later."""
+    """Start a run that watches the inbox, unless one runs; the schedule would start it up to ten minutes later."""
     place()
     if not _runs(api, ("PENDING", "RUNNING")):
         _asked(api, f"deployments/{_deployment(api)}/create_flow_run", {"state": {"type": "SCHEDULED"}})
 
 
 def end(api: str) -> None:
-    """Cancel what watches: its process ends with the worker, and nobody else would tell the server."""
+    """Cancel the watching run: its process ends with the worker and cannot tell the server."""
     try:
         for run in _runs(api, ("PENDING", "RUNNING")):
             _asked(api, f"flow_runs/{run['id']}/set_state", {"state": {"type": "CANCELLED"}, "force": True})
     except MissingTool:
-        return  # the server is ending as well
+        return  # the server has ended as well
 
 
 def _deployment(api: str) -> str:
@@ -60,11 +60,11 @@ def _runs(api: str, states: tuple[str, ...]) -> list[dict[str, Any]]:
 
 
 def _asked(api: str, path: str, body: dict[str, Any] | None) -> Any:
-    """GET without a body, else POST. Raises MissingTool with what the server says."""
+    """GET without a body, else POST. Raises MissingTool with the server's message."""
     try:
         method = "GET" if body is None else "POST"
         answer = httpx.request(method, f"{api}/{path}", json=body, timeout=health.ASK_S, auth=health.key_of())
         answer.raise_for_status()
     except httpx.HTTPError as fault:
-        raise MissingTool(f"{api}/{path}: the server cannot be asked: {fault}") from fault
+        raise MissingTool(f"{api}/{path}: the server gives no valid answer: {fault}; is it running?") from fault
     return answer.json()

@@ -1,7 +1,7 @@
-"""All services on this machine with one command: `python -m deploy.local up | down | status` (`make up`, `make down`).
+"""All services on this machine: `python -m deploy.local up | down | status` (`make up`, `make down`).
 
-Processes, logs and notes lie in `<out>/services`; `up` starts what does not run, `down` ends what does and leaves
-every result, database and log. Nothing listens beyond this machine.
+Logs and notes are in `<out>/services`. `up` starts services that do not run; `down` ends them and leaves results,
+databases and logs. No service listens beyond this machine.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ import psutil
 from deploy import inbox, services
 from deploy.serve import serve
 from deploy.services import Ports, Service
-from flows.deploy import health
-from flows.deploy.health import Running
+from flows import health
+from flows.health import Running
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool, SgcadError
 from sgcad_core.system.locks import lock_file
 
 START_S = 240.0
-"""First start of MLflow and Prefect: databases are made, 20 s on two idle cores, minutes on busy ones."""
+"""Time limit of a start; the first one makes databases: 20 s on two idle cores, minutes on busy ones."""
 STOP_S = 20.0
-"""For writing down what is under way; after that the process is ended."""
+"""Time for a normal end; after that the process is killed."""
 LAST_LINES = 15
 LOOK_S = 0.5
 DEPLOYED = "deployed.yaml"
@@ -52,7 +52,7 @@ def wanted(out: Path, ports: Ports, limit: int = 3) -> tuple[Service, ...]:
 
 # ------------------------------------------------------------------ up
 def up(out: Path, ports: Ports, limit: int = 3) -> dict[str, Running]:
-    """Start what does not run, deploy, wait until all are well. Raises ConfigError (port), MissingTool (start)."""
+    """Start missing services, deploy, wait for all health checks. Raises ConfigError (port), MissingTool (start)."""
     out = out.resolve()
     with _alone(health.services_folder(out)) as folder:
         asked = wanted(out, ports, limit)
@@ -70,23 +70,23 @@ def up(out: Path, ports: Ports, limit: int = 3) -> dict[str, Running]:
 
 
 def _wait_for_worker(api: str, folder: Path) -> None:
-    """A worker is well before the server has heard of it."""
+    """Wait until the server lists a worker, which is later than the worker's health check."""
     deadline = time.monotonic() + START_S
     while not _hears_a_worker(api):
         if time.monotonic() > deadline:
-            raise MissingTool(f"the server hears of no worker:\n{_last_words(folder / 'worker.log')}")
+            raise MissingTool(f"the server lists no worker:\n{_last_words(folder / 'worker.log')}")
         time.sleep(LOOK_S)
 
 
 def _hears_a_worker(api: str) -> bool:
     try:
         return bool(health.workers_online(api))
-    except httpx.HTTPError:  # too busy to answer: asked again
+    except httpx.HTTPError:  # the server is busy: it is asked again
         return False
 
 
 def _check_ports(asked: Sequence[Service]) -> None:
-    """Raises ConfigError naming every port that somebody else has."""
+    """Raises ConfigError naming every port that another program has."""
     taken = [s for s in asked if _is_taken(s.port)]
     if taken:
         which = "; ".join(f"port {s.port} of the {s.name} is taken by another program" for s in taken)
@@ -112,7 +112,7 @@ def _start_and_wait(asked: Sequence[Service], folder: Path) -> None:
 
 
 def start(service: Service, folder: Path) -> Running:
-    """Start a service in a session of its own and note it."""
+    """Start a service in a session of its own and write its note."""
     log = folder / f"{service.name}.log"
     with log.open("ab") as out:
         process = subprocess.Popen(  # noqa: S603 - our own services
@@ -131,7 +131,7 @@ def start(service: Service, folder: Path) -> Running:
 
 
 def wait(running: Running, deadline: float) -> None:
-    """Return when a service is well. Raises MissingTool with its last words if it ends or stays silent."""
+    """Return when a service's health check passes. Raises MissingTool with its last lines if it ends or is silent."""
     while running.alive() and time.monotonic() < deadline:
         if health.answers(running.health):
             return
@@ -145,20 +145,20 @@ def _last_words(log: Path) -> str:
 
 
 def _deploy(folder: Path, api: str) -> None:
-    """Serve the flows and note what was served."""
+    """Deploy the flows and keep a copy of the deployments."""
     serve(api, folder / "prefect")
     (folder / DEPLOYED).write_bytes(services.DEPLOYMENTS.read_bytes())
 
 
 def _is_deployed(folder: Path) -> bool:
-    """Whether prefect.yaml is what it was when it was deployed last."""
+    """Whether prefect.yaml is unchanged since it was deployed."""
     last = folder / DEPLOYED
     return last.is_file() and last.read_bytes() == services.DEPLOYMENTS.read_bytes()
 
 
 # ------------------------------------------------------------------ down
 def down(out: Path) -> list[str]:
-    """End what runs, the worker first; names of what was ended. Results and logs stay."""
+    """End the running services, the worker first; their names. Results and logs stay."""
     with _alone(health.services_folder(out.resolve())) as folder:
         there = health.noted(folder)
         if "server" in there and there["server"].alive():
@@ -173,7 +173,7 @@ def down(out: Path) -> list[str]:
 
 
 def stop(running: Running) -> None:
-    """End a service and all that it started: asked first, ended after a while."""
+    """End a service and its child processes: SIGTERM first, SIGKILL after STOP_S."""
     family = [psutil.Process(running.pid), *psutil.Process(running.pid).children(recursive=True)]
     os.kill(running.pid, signal.SIGTERM)
     _, left = psutil.wait_procs(family, timeout=STOP_S)
@@ -187,7 +187,7 @@ def stop(running: Running) -> None:
 
 @contextmanager
 def _alone(folder: Path) -> Iterator[Path]:
-    """One `up` or `down` at a time; the next waits."""
+    """Hold the folder's lock: one `up` or `down` at a time."""
     folder.mkdir(parents=True, exist_ok=True)
     with lock_file(folder / ".lock"):
         yield folder
@@ -195,12 +195,12 @@ def _alone(folder: Path) -> Iterator[Path]:
 
 # ------------------------------------------------------------------ command
 def status(out: Path) -> bool:
-    """Print a line a service; whether all that was started is well."""
+    """Print one line per service; whether all started services are well."""
     there = health.noted(health.services_folder(out.resolve()))
     for running in there.values():
         _say(f"{running.name:8} {'well' if running.healthy() else 'WRONG'}  {running.address}  log: {running.log}")
     if not there:
-        _say("nothing was started here: `make up`")
+        _say("no service was started here; `make up` starts them")
     return all(running.healthy() for running in there.values())
 
 
@@ -225,7 +225,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if asked.what == "up":
             found = up(asked.out, Ports(asked.server_port, asked.mlflow_port, asked.worker_port), asked.limit)
             status(asked.out)
-            _say(f"inbox: {inbox.place()}: drop .txt, .xml, .pdf or a folder a case; looked at every second")
+            _say(f"inbox: {inbox.place()}: put in .txt, .xml, .pdf files or one folder per case; read every second")
             _say(f"results: {asked.out.resolve()}; reports go to done/, refused/, failed/, unread/ with outcome.json")
             _say(f"export PREFECT_API_URL={found['server'].address}/api")
         elif asked.what == "down":

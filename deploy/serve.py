@@ -1,4 +1,4 @@
-"""Makes the work pool and serves every flow of prefect.yaml on a Prefect server.
+"""Makes the work pool and deploys every flow of prefect.yaml on a Prefect server.
 
 python -m deploy.serve     # on the server that PREFECT_API_URL names: the container `deployments`
 """
@@ -12,7 +12,7 @@ from pathlib import Path
 import httpx
 
 from deploy import services
-from flows.deploy import health
+from flows import health
 from sgcad_core import settings
 from sgcad_core.errors import MissingTool
 
@@ -20,7 +20,7 @@ LIMIT_S = 300.0
 
 
 def serve(api: str, home: Path | None = None, work: Path = settings.ROOT) -> None:
-    """Both, as often as wanted. Raises MissingTool with what server or Prefect say.
+    """Make the pool and deploy the flows; repeating it is safe. Raises MissingTool with the server's message.
 
     `home` is Prefect's folder; flow runs start in the folder `work`, which is where relative paths begin.
     """
@@ -36,7 +36,7 @@ def serve(api: str, home: Path | None = None, work: Path = settings.ROOT) -> Non
 
 
 def _make_pool(api: str) -> None:
-    """The first worker fills in what its runs need; asking again does no harm."""
+    """Make the work pool unless it exists; the first worker adds its settings."""
     body = {"name": health.POOL, "type": "process"}
     try:
         answer = httpx.post(f"{api}/work_pools/", json=body, timeout=LIMIT_S, auth=health.key_of())
@@ -47,7 +47,7 @@ def _make_pool(api: str) -> None:
 
 
 def main() -> int:
-    """0, or 2 with a message."""
+    """Exit code: 0, or 2 with a message."""
     try:
         serve(settings.prefect_url().rstrip("/"), work=Path(settings.environment("SGCAD_WORK") or settings.ROOT))
     except MissingTool as fault:

@@ -1,7 +1,4 @@
-"""The long-running services and the commands that start them, the same on this machine and in containers.
-
-Knows commands, ports and health addresses; starts nothing.
-"""
+"""Commands, ports and health addresses of the long-running services. Starts nothing."""
 
 from __future__ import annotations
 
@@ -10,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from flows.deploy.health import POOL
+from flows.health import POOL
 from flows.server import BULK
 from sgcad_core import settings
 
@@ -28,7 +25,7 @@ DEPLOYMENTS = settings.ROOT / "deploy" / "prefect.yaml"
 
 @dataclass(frozen=True)
 class Service:
-    """One process: how it is started, where people look (`address`), where it says that it is well (`health`)."""
+    """One process: its command, its page (`address`) and its health check (`health`)."""
 
     name: str
     command: tuple[str, ...]
@@ -40,7 +37,7 @@ class Service:
 
 @dataclass(frozen=True)
 class Ports:
-    """Where the services listen; the worker's answers health checks only."""
+    """Ports of the services; the worker's answers health checks only."""
 
     server: int = 4200
     mlflow: int = 5000
@@ -48,7 +45,7 @@ class Ports:
 
 
 def api_of(host: str, port: int) -> str:
-    """What PREFECT_API_URL has to be."""
+    """The value of PREFECT_API_URL for a server."""
     return f"http://{host}:{port}/api"
 
 
@@ -89,10 +86,10 @@ def worker(home: Path, api: str, port: int, name: str = "local", limit: int = 2)
 
 
 def deploy_command() -> tuple[str, ...]:
-    """Serves every flow of deploy/prefect.yaml; the working directory is the checkout."""
+    """The command that deploys every flow of deploy/prefect.yaml, run in the checkout."""
     return _here(("prefect", "--no-prompt", "deploy", "--all", "--prefect-file", str(DEPLOYMENTS)))
 
 
 def _here(command: tuple[str, ...]) -> tuple[str, ...]:
-    """With this interpreter's packages, whatever is on the path."""
+    """The command run by this interpreter, independent of PATH."""
     return (sys.executable, "-m", *command)

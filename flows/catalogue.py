@@ -1,26 +1,29 @@
-"""Plugins and configs in words: `sgcad plugins list|show`, `sgcad check`. Prints to stdout."""
+"""Descriptions of plugins and configs on stdout, for `sgcad plugins list|show` and `sgcad check`."""
 
 from __future__ import annotations
 
 import inspect
 import json
+import re
 from typing import Any
 
 from rich.console import Console
 from rich.table import Table
 
-from flows import memory_check
+from flows.batch import machine
 from flows.terminal import escape
 from sgcad_core.config import SINGLE, Config
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Plugin
 from sgcad_core.registry import KINDS, catalogue, installed, plugin_class
 
+MEMORY_MARGIN = 1.1
+"""Memory needed over that of the weights, for caches and activations."""
 TRAITS = ("asks_model", "needs_prior", "gives_logits", "stage")
 
 
 def list_plugins() -> None:
-    """All installed names with where they come from, and which entry points lead nowhere; imports none of them."""
+    """Print all installed plugins with their packages, and entry points without a module; imports none of them."""
     table, gone = Table("kind", "name", "from"), []
     for kind in KINDS:
         there = installed(kind)
@@ -29,14 +32,16 @@ def list_plugins() -> None:
             if name in there:
                 table.add_row(kind, escape(name), escape(origin))
             else:
-                gone.append(f"{kind}/{name} is registered by {origin}, which does not exist: install that package anew")
+                gone.append(
+                    f"{kind}/{name} is registered by {origin}, which does not exist: install that package again"
+                )
     _console().print(table)
     for line in gone:
         _console().print(escape(line), soft_wrap=True)
 
 
 def show_plugin(name: str) -> None:
-    """Fields of every plugin of that name. Raises ConfigError naming what is installed."""
+    """Print the fields of every plugin of a name. Raises ConfigError naming the installed plugins."""
     kind, _, bare = name.rpartition("/")
     found = [k for k in KINDS if bare in catalogue(k) and kind in ("", k)]
     if not found:
@@ -77,7 +82,7 @@ def _type(schema: dict[str, Any]) -> str:
 
 
 def describe_config(config: Config) -> None:
-    """Say what a config that passed its check would do."""
+    """Print a checked config: its plugins and their fields."""
     console = _console()
     based = f"; extends {escape(config.extends)}" if config.extends else ""
     limits = f"seed {config.seed}, at most {config.max_attempts} attempts a stage"
@@ -91,10 +96,42 @@ def describe_config(config: Config) -> None:
     for entry, plugin in zip(config.raw.get("validators") or (), config.validators, strict=True):
         table.add_row(f"validator ({plugin.stage})", *_row(entry, plugin))
     console.print(table)
-    if line := memory_check.told(config):
+    if line := memory_warning(config):
         console.print(escape(line), soft_wrap=True)
 
 
+# ------------------------------------------------------------------ memory
+def memory_warning(config: Config, there: dict[str, Any] | None = None) -> str:
+    """A warning if the weights are known not to fit, else an empty text. `there`: the machine as of `hardware`."""
+    need = config.backbone.weights_gb() if config.backbone else None
+    if need is None:
+        return ""
+    gb, where = memory_for(there or machine.hardware(), str(getattr(config.backbone, "device", "auto")))
+    if need * MEMORY_MARGIN <= gb:
+        return ""
+    return (
+        f"{config.name}: will not fit this machine: the weights take about {need:.0f} GB and caches more; {where}"
+        f"{_remedy(config)}"
+    )
+
+
+def memory_for(there: dict[str, Any], device: str) -> tuple[float, str]:
+    """Decimal GB that weights can have on a device, and that in words."""
+    cards = [float(found[1]) * 2**20 / 1e9 for card in there["gpus"] if (found := re.search(r"(\d+) MiB", card))]
+    if cards and device != "cpu":
+        return sum(cards), f"there are {len(cards)} graphics cards with {sum(cards):.0f} GB together"
+    gb = there["memory_gib"] * 2**30 / 1e9
+    cards_told = "the config asks for the processor" if cards else "there is no graphics card"
+    return gb, f"{cards_told}, and {gb:.0f} GB of memory"
+
+
+def _remedy(config: Config) -> str:
+    if getattr(config.backbone, "quantization", "none") == "none":
+        return "; try --set backbone.quantization=int4, a smaller model, or a server (openai.yaml)"
+    return "; choose a smaller model, or a server (openai.yaml)"
+
+
+# ------------------------------------------------------------------ printing
 def _row(entry: Any, plugin: Plugin) -> tuple[str, str]:
     """The plugin's name in the YAML, and its fields."""
     name, fields = entry["name"] if isinstance(entry, dict) else entry, plugin.model_dump(mode="json")

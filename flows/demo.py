@@ -1,4 +1,4 @@
-"""`make demo`: the bundled reports become scenarios under the default config; says what happens and what to do next.
+"""`make demo`: turns the bundled reports into scenarios under the default config and prints the next steps.
 
 python -m flows.demo [OUT]
 """
@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from flows.batch import progress_bar, run_batch, summary
-from flows.batch.find_cases import cases_in
 from flows.batch.plan_batch import Batch, batch_of
 from flows.case import case_in_words
-from flows.case.case_folder import CaseFolder
+from flows.case_files.case_folder import CaseFolder
+from flows.case_files.find_cases import cases_in
 from flows.cli import DEFAULT_OUT, guarded
 from flows.terminal import escape_plain
 from sgcad_core import settings
@@ -29,7 +29,7 @@ def main(arguments: Sequence[str] = ()) -> int:
     _say(f"Reads {len(batch.cases)} crash reports in {_shown(REPORTS)} and writes a road, a scenario and its replay")
     _say(f"for each, with configs/{config}. The first start makes two databases: half a minute.")
     tally = summary.Tally(batch)
-    with progress_bar.watching(tally) as watch:
+    with progress_bar.batch_progress(tally) as watch:
         run_batch.evaluate(batch, watch.ended, on_turn=watch.turn)
     for line in [*met(tally), *ending(batch)]:
         _say(line)
@@ -37,7 +37,7 @@ def main(arguments: Sequence[str] = ()) -> int:
 
 
 def met(tally: summary.Tally) -> list[str]:
-    """One line a case: who hits whom, or why nothing does."""
+    """One line per case: its first contact, or why there is no scenario."""
     results = sorted((ending.result for _, ending in tally.endings), key=lambda result: str(result["case"]))
     return [
         f"{result['case']}: {case_in_words.contact(result) if result['status'] == 'generated' else result['reason']}"
@@ -46,7 +46,7 @@ def met(tally: summary.Tally) -> list[str]:
 
 
 def ending(batch: Batch) -> list[str]:
-    """Three pictures, what to open, and two commands to go on with."""
+    """Lines with the pictures, a page to open, and two commands to continue with."""
     places = [CaseFolder(batch.out, config.name, case.id).path for config in batch.configs for case in batch.cases]
     pictures = [place / "picture.png" for place in places if (place / "picture.png").is_file()]
     page = next((place / "player.html" for place in places if (place / "player.html").is_file()), None)
@@ -63,7 +63,7 @@ def ending(batch: Batch) -> list[str]:
 
 
 def _shown(path: Path) -> str:
-    """As a person in this folder would type it."""
+    """The path relative to the current folder, if it lies below it."""
     here = Path.cwd()
     return escape_plain(str(path.relative_to(here) if path.is_relative_to(here) else path))
 

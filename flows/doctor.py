@@ -1,4 +1,4 @@
-"""`sgcad doctor`: is everything there, and does it work? Each line says what, the value, and the remedy."""
+"""`sgcad doctor`: checks the installation; each line gives the check, its value, and the remedy of a fault."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ import httpx
 import psutil
 from rich.console import Console
 
-from flows.case import case_folder
-from flows.deploy import health
+from flows import health
+from flows.case_files import case_folder
 from flows.server import prefect_server
 from flows.terminal import escape
 from sgcad_core import settings
@@ -30,10 +30,10 @@ PACKAGES = (
 LOW_MB = 2000
 STALE_S = 24 * 3600
 CHILDREN = ("prefect.server.api.server:create_app", "flows.server", "sgcad_core.system.worker_process")
-"""Modules that only ever run as another command's child."""
+"""Modules that run only as children of another command."""
 
 
-class Trouble(Exception):
+class CheckFailed(Exception):
     """A check failed; the message says what to do."""
 
 
@@ -45,11 +45,11 @@ def examine(out: Path) -> bool:
     for name, test in CHECKS.items():
         started = time.perf_counter()
         if stands_on := wrong & NEEDS.get(name, set()):
-            console.print(f"[yellow]not looked at[/] {name}: mend {', '.join(sorted(stands_on))} first")
+            console.print(f"[yellow]not checked[/] {name}: repair {', '.join(sorted(stands_on))} first")
             continue
         try:
             said, mark = test(out), "[green]ok[/]   "
-        except (Trouble, SgcadError, OSError, subprocess.SubprocessError) as fault:
+        except (CheckFailed, SgcadError, OSError, subprocess.SubprocessError) as fault:
             said, mark, fine = str(fault), "[red]wrong[/]", False
             wrong.add(name)
         seconds = time.perf_counter() - started
@@ -59,7 +59,7 @@ def examine(out: Path) -> bool:
 
 def _python(out: Path) -> str:
     if not (3, 11) <= sys.version_info[:2] < (3, 14):
-        raise Trouble(f"Python {sys.version.split()[0]}; 3.11 to 3.13 are supported")
+        raise CheckFailed(f"Python {sys.version.split()[0]}; 3.11 to 3.13 are supported")
     return sys.version.split()[0]
 
 
@@ -71,14 +71,14 @@ def _version(name: str) -> str:
     try:
         return version(name)
     except PackageNotFoundError as fault:
-        raise Trouble(f"{name} is not installed: pip install -e .") from fault
+        raise CheckFailed(f"{name} is not installed: pip install -e .") from fault
 
 
 def _netconvert(out: Path) -> str:
     command, environment = [str(settings.netconvert()), "--version"], settings.subprocess_environment()
     said = subprocess.run(command, capture_output=True, text=True, timeout=30, env=environment)  # noqa: S603 - ours
     if said.returncode:
-        raise Trouble(f"{settings.netconvert()} does not run: {said.stderr.strip()[:200]}")
+        raise CheckFailed(f"{settings.netconvert()} does not run: {said.stderr.strip()[:200]}")
     return said.stdout.splitlines()[0]
 
 
@@ -103,31 +103,33 @@ def _writable(out: Path) -> str:
     if not there:
         out.rmdir()
     if free < LOW_MB:
-        raise Trouble(f"{free:,} MB free at {out.resolve()}; {LOW_MB:,} are advised for a batch of 1,000 cases")
+        raise CheckFailed(f"{free:,} MB free at {out.resolve()}; {LOW_MB:,} are advised for a batch of 1,000 cases")
     return f"{out.resolve()} can be written, {free:,} MB free"
 
 
 def _home(out: Path) -> str:
-    """Prefect keeps its database in a folder of the user's, and would try to make it for half a minute."""
+    """Check Prefect's folder first: Prefect itself would try to create it for half a minute."""
     home = settings.prefect_home()
     try:
         home.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(prefix=".sgcad-", dir=home):
             pass
     except OSError as fault:
-        raise Trouble(f"{home} cannot be written ({fault.strerror}): set PREFECT_HOME to a folder that can") from fault
+        raise CheckFailed(
+            f"{home} cannot be written ({fault.strerror}): set PREFECT_HOME to a folder that can"
+        ) from fault
     return f"{home} can be written"
 
 
 def _flow(out: Path) -> str:
-    """One real flow, on the user's server or one of our own."""
+    """Run a real flow, on the user's server or on one of this command."""
     with prefect_server() as server:
         if server:
             server.wait()
         try:
             stale = _run_tiny_flow()
         except (RuntimeError, httpx.HTTPError) as fault:
-            raise Trouble(f"no Prefect flow can run: {fault}; look at PREFECT_HOME and PREFECT_API_URL") from fault
+            raise CheckFailed(f"no Prefect flow can run: {fault}; look at PREFECT_HOME and PREFECT_API_URL") from fault
     said = f"a Prefect flow runs (server: {settings.prefect_url() or 'one for each command'})"
     if stale:
         remedy = f"prefect flow-run delete {stale[0]} ..."
@@ -136,14 +138,14 @@ def _flow(out: Path) -> str:
 
 
 def _run_tiny_flow() -> list[str]:
-    """Run a flow; ids of runs that have said RUNNING for so long that nothing can stand behind them."""
+    """Run a flow; ids of runs that have been RUNNING for longer than STALE_S, left by killed batches."""
     from prefect import flow
     from prefect.client.orchestration import get_client
     from prefect.events.worker import EventsWorker
     from prefect.settings import PREFECT_FLOWS_HEARTBEAT_FREQUENCY, temporary_settings
 
     def tiny() -> None:
-        """Nothing to do."""
+        """Do nothing."""
 
     with temporary_settings({PREFECT_FLOWS_HEARTBEAT_FREQUENCY: None}):
         flow(name="doctor")(tiny)()
@@ -155,16 +157,16 @@ def _run_tiny_flow() -> list[str]:
 
 
 def _services(out: Path) -> str:
-    """What `make up` started here, or what the named server has."""
+    """Check the services that `make up` started here, or those of the named server."""
     there = health.noted(health.services_folder(out))
     api = f"{there['server'].address}/api" if "server" in there else settings.prefect_url()
     if not api:
-        return "none started here and no server named (PREFECT_API_URL); `make up` starts them"
+        return "none started here and no server named in PREFECT_API_URL; `make up` starts them"
     said = [(s.healthy(), f"{s.name} {'well' if s.healthy() else f'not well, see {s.log}'}") for s in there.values()]
     said += health.server_lines(api)
     line = "; ".join(text for _, text in said)
     if there and not all(fine for fine, _ in said):
-        raise Trouble(f"{line}; `make down`, then `make up`")
+        raise CheckFailed(f"{line}; `make down`, then `make up`")
     return line
 
 
@@ -191,14 +193,14 @@ def _leftovers(out: Path) -> str:
     lying = f"{' and '.join(found)} of killed or running batches; the next batch clears them" if found else ""
     if processes:
         ended = f"processes of killed commands still run; end them: kill {' '.join(processes)}"
-        raise Trouble(f"{ended}; {lying}" if lying else ended)
+        raise CheckFailed(f"{ended}; {lying}" if lying else ended)
     if lying:
         return lying
     return "no orphaned process, no half-written case, no temporary folder"
 
 
 def _orphans() -> Iterator[psutil.Process]:
-    """Our processes that no command waits for. In a container the command itself may be process 1."""
+    """The project's processes without a parent command. In a container the command itself may be process 1."""
     try:
         if any(part in " ".join(psutil.Process(1).cmdline()) for part in ("sgcad", "prefect", "flows.")):
             return
@@ -223,4 +225,4 @@ CHECKS: dict[str, Callable[[Path], str]] = {
     "leftovers": _leftovers,
 }
 NEEDS: dict[str, set[str]] = {"flow": {"home", "output"}, "tracking": {"output"}, "services": {"home"}}
-"""Checks that take seconds and tell nothing new where one of these is wrong."""
+"""Checks that are skipped if one of these has failed."""

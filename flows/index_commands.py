@@ -1,6 +1,6 @@
 """`sgcad index build | add | search | stats`: the knowledge base of the `lancedb` retriever.
 
-Reaches the retriever through the registry. Progress goes to stderr, answers to stdout.
+Progress goes to stderr, answers to stdout.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ Folder = Annotated[Path, typer.Option("--out", "-o", help="Folder of the index."
 Embedder = Annotated[
     str, typer.Option("--embedder", "-e", help="none (full text), minilm, sentence_transformers or openai.")
 ]
-Model = Annotated[str, typer.Option("--model", help="For sentence_transformers and openai.")]
-BaseUrl = Annotated[str, typer.Option("--base-url", help="Of an OpenAI-compatible server.")]
+Model = Annotated[str, typer.Option("--model", help="Model, for sentence_transformers and openai.")]
+BaseUrl = Annotated[str, typer.Option("--base-url", help="Address of an OpenAI-compatible server.")]
 
 
 @index_app.command()
@@ -35,9 +35,9 @@ def build(
     embedder: Embedder = "none",
     model: Model = "",
     base_url: BaseUrl = "",
-    builtin: Annotated[bool, typer.Option(help="Take in what the project brings.")] = True,
+    builtin: Annotated[bool, typer.Option(help="Include the project's own documents.")] = True,
 ) -> None:
-    """Write the index anew: what the project brings, and the files."""
+    """Build the index from the project's own documents and the files; an existing index is replaced."""
     retriever = retriever_of(out, embedder=embedder, model=model, base_url=base_url)
     skipped: list[str] = []
     chunks = retriever.chunks(files or [], builtin, _note(skipped))
@@ -48,7 +48,7 @@ def build(
 
 @index_app.command()
 def add(files: Files = None, out: Folder = DEFAULT_INDEX, base_url: BaseUrl = "") -> None:
-    """Add files to the index (and bring it up to date with the project); what is there already stays."""
+    """Add files to the index, or without files the project's new documents; existing entries stay."""
     before = retriever_of(out).stats()
     kind, _, model = before.embedder.partition("/")
     named = {"embedder": kind or "none", "model": "" if kind == "minilm" else model, "base_url": base_url}
@@ -64,11 +64,11 @@ def add(files: Files = None, out: Folder = DEFAULT_INDEX, base_url: BaseUrl = ""
 
 @index_app.command()
 def search(
-    text: Annotated[str, typer.Argument(help="What to look for.")],
+    text: Annotated[str, typer.Argument(help="Text to search for.")],
     out: Folder = DEFAULT_INDEX,
     kind: Annotated[list[str] | None, typer.Option("--kind", help="api, snippet, xml, example, junction.")] = None,
     task: Annotated[str | None, typer.Option("--task", help="road or scenario.")] = None,
-    count: Annotated[int, typer.Option("-k", min=1, max=100, help="Passages shown.")] = 5,
+    count: Annotated[int, typer.Option("-k", min=1, max=100, help="Number of passages.")] = 5,
     embedder: Embedder = "",
     base_url: BaseUrl = "",
 ) -> None:
@@ -85,7 +85,7 @@ def search(
 
 @index_app.command()
 def stats(out: Folder = DEFAULT_INDEX) -> None:
-    """Say what the index holds."""
+    """Print the index's version, embedder and numbers of entries."""
     _describe(out, retriever_of(out).stats())
 
 
@@ -109,7 +109,7 @@ def _note(skipped: list[str]) -> Callable[[str, str], None]:
 
 @contextmanager
 def _bar(word: str) -> Iterator[Callable[[int], None]]:
-    """A bar on stderr that counts chunks; how many there will be is not known before they are read."""
+    """A bar on stderr that counts chunks; their total is not known in advance."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 

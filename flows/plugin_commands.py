@@ -1,4 +1,4 @@
-"""`sgcad plugins list | show | new`: what is installed, and the beginning of one of your own."""
+"""`sgcad plugins list | show | new`: the installed plugins, and the template of a new one."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from typing import Annotated
 
 import typer
 
-plugins_app = typer.Typer(no_args_is_help=True, help="What is installed: `list`, `show NAME`, `new KIND NAME`.")
+plugins_app = typer.Typer(
+    no_args_is_help=True, help="Installed plugins: `list`, `show NAME`; a new one: `new KIND NAME`."
+)
 
 
 @plugins_app.command("list")
 def plugins_list() -> None:
-    """Every installed plugin, kind by kind."""
+    """List every installed plugin by kind."""
     from flows.catalogue import list_plugins
 
     list_plugins()
@@ -20,7 +22,7 @@ def plugins_list() -> None:
 
 @plugins_app.command("show")
 def plugins_show(name: Annotated[str, typer.Argument(help="A plugin's name, or kind/name.")]) -> None:
-    """A plugin's job and its fields with types and defaults."""
+    """Show a plugin's description and its fields with types and defaults."""
     from flows.catalogue import show_plugin
 
     show_plugin(name)
@@ -29,10 +31,10 @@ def plugins_show(name: Annotated[str, typer.Argument(help="A plugin's name, or k
 @plugins_app.command("new")
 def plugins_new(
     kind: Annotated[str, typer.Argument(help="One of the kinds of `sgcad plugins list`.")],
-    name: Annotated[str, typer.Argument(help="What a YAML will call it: small letters, digits, _.")],
-    into: Annotated[Path, typer.Option("--into", help="The folder that the package is written into.")] = Path(),
+    name: Annotated[str, typer.Argument(help="Its name in a YAML: lower-case letters, digits, _.")],
+    into: Annotated[Path, typer.Option("--into", help="Folder to write the package into.")] = Path(),
 ) -> None:
-    """Write a package with a plugin that works, its test and a config that uses it."""
+    """Write a package with a working plugin, its test and a config that uses it."""
     from flows.scaffolding import new
 
     files = new(kind, name, into)

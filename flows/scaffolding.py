@@ -1,6 +1,7 @@
 """`sgcad plugins new KIND NAME`: a package with one plugin that works, its test, and a config that names it.
 
-The plugins are texts in flows/scaffold, one a kind: the module, its test and the lines of a config, parted by `---`.
+The templates are texts in flows/scaffold, one per kind: the module, its test and the lines of a config, separated by
+`---`.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ IMPORTS = {
         "from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Node, Road, RoadSpec",
     ),
 }
-"""What a kind's test imports beside the plugin itself."""
+"""Imports of a kind's test beside the plugin itself."""
 BASES = {"decoder": "mini.yaml"}
 """The config that a kind's example extends; the plugin takes its kind's place."""
 BASE = "template.yaml"
@@ -54,16 +55,16 @@ BASE = "template.yaml"
 
 
 def new(kind: str, name: str, into: Path) -> list[Path]:
-    """Write the package `<into>/sgcad-<name>`; its files. Raises ConfigError: kind, name or folder is no good."""
+    """Write the package `<into>/sgcad-<name>`; its files. Raises ConfigError for a wrong kind, name or folder."""
     if kind not in KINDS:
         raise ConfigError(f"unknown kind {kind!r}.{did_you_mean(kind, KINDS)} Kinds: {', '.join(KINDS)}")
     if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
-        raise ConfigError(f"name {name!r}: small letters, digits and _, a letter first, such as my_{kind}")
+        raise ConfigError(f"name {name!r}: use lower-case letters, digits and _, a letter first, such as my_{kind}")
     if name in catalogue(kind):
         raise ConfigError(f"{kind} {name!r} is installed already ({catalogue(kind)[name].value}): choose another name")
     folder = into / f"sgcad-{name.replace('_', '-')}"
     if folder.exists():
-        raise ConfigError(f"{folder} is there already: nothing was written; choose another name or --into")
+        raise ConfigError(f"{folder} exists already: nothing was written; choose another name or --into")
     files = _files(kind, name)
     for path, content in files.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)

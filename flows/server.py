@@ -1,10 +1,10 @@
-"""A Prefect server for the length of one command, where the user has named none.
+"""A Prefect server that lasts as long as one command, if the user has named none.
 
-Prefect would start one itself, but late (after its import), in our process group (Ctrl-C would end it
-before the flow's state is written) and as an orphan after a kill -9. This one starts first, has a session of
-its own and ends when our end of its standard input closes, however that happens.
+Prefect would start one itself, but late (after its import), in the command's process group (Ctrl-C would end it before
+the flow's state is written) and as an orphan after a kill -9. This server starts first, has a session of its own and
+ends when the command's end of its standard input closes, for any reason.
 
-    python -m flows.server <file descriptor of a bound socket>        # the far end
+    python -m flows.server <file descriptor of a bound socket>        # the server process
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from sgcad_core import settings
 from sgcad_core.errors import MissingTool, SgcadError
 
 START_S = 180.0
-"""The first start makes the database: 14 s on two idle cores, a minute on busy ones."""
+"""Time limit of the start; the first one makes the database: 14 s on two idle cores, a minute on busy ones."""
 STOP_S = 15.0
-"""For writing what it has been told."""
+"""Time limit of writing the last states."""
 
 BULK = {
     "PREFECT_SERVER_SERVICES_TASK_RUN_RECORDER_BATCH_SIZE": "50",
@@ -47,7 +47,7 @@ of a plain one.
 
 
 class ServerLost(MissingTool):
-    """A server of our own ended while it was needed; `how` says in a few words in what way."""
+    """The command's own server ended while it was needed; `how` describes its end."""
 
     def __init__(self, how: str) -> None:
         self.how = f"Prefect's server {how}"
@@ -71,7 +71,7 @@ class Server:
                 )
 
     def wait(self) -> None:
-        """Return when the server answers. Raises MissingTool if it never does, ServerLost if somebody killed it."""
+        """Return when the server answers. Raises MissingTool if it never does, ServerLost if it was killed."""
         deadline = time.monotonic() + START_S
         while self.process.poll() is None and time.monotonic() < deadline:
             if answers(self.address):
@@ -86,7 +86,7 @@ class Server:
         )
 
     def ended(self) -> str:
-        """How the process ended though nobody stopped it; empty while it runs."""
+        """Description of the process's end; empty while it runs."""
         if (code := self.process.poll()) is None:
             return ""
         return f"was killed by signal {-code}" if code < 0 else f"ended with code {code}"
@@ -117,7 +117,7 @@ def prefect_server() -> Iterator[Server | None]:
     """Name a fresh server to Prefect while the block lasts; None if the user has named one that answers.
 
     Enter it before prefect is imported. Call `wait` on the server before the first flow. Raises MissingTool
-    if the user's server does not answer, ServerLost where the block fails because ours has ended.
+    if the user's server does not answer, ServerLost where the block fails because that server has ended.
     """
     if url := settings.prefect_url():
         if not answers(url):
@@ -143,7 +143,7 @@ def prefect_server() -> Iterator[Server | None]:
 
 
 def _serve(descriptor: int) -> None:
-    """The far end: serve on a bound socket until standard input closes."""
+    """Serve on a bound socket until standard input closes."""
     threading.Thread(target=_end_with_parent, daemon=True).start()
     settings.quiet_libraries()
     import uvicorn

@@ -1,4 +1,4 @@
-"""Text on its way to a terminal. Knows no flow."""
+"""Text made safe to print in a terminal."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from rich import markup
 def escape(text: str) -> str:
     """The text as rich shows it unchanged, control characters made visible.
 
-    Names of files and reasons hold what strangers wrote: an escape sequence could colour, move and clear.
+    Names of files and reasons come from outside: an escape sequence in them could color, move and clear.
     """
     return markup.escape(escape_plain(text))
 
 
 def escape_plain(text: str) -> str:
-    """The same for lines that rich does not write."""
+    """The text with control characters made visible, for lines that rich does not write."""
     return "".join(c if c == "\n" or unicodedata.category(c) != "Cc" else "\ufffd" for c in text)

@@ -1,1 +1,1 @@
-"""Many cases: planned, run under Prefect, tracked, summarised."""
+"""Batches of cases: planned, run under Prefect, tracked, summarized."""

@@ -1,10 +1,10 @@
-"""What the folder of a config's results is called, and the config.yaml inside it that says what they are results of.
+"""The name of the folder of a config's results, and the config.yaml inside it.
 
     template.yaml                                runs/template
     template.yaml --set max_attempts=3           runs/template-max_attempts_3
 
-So runs with other overrides lie side by side. A YAML that was edited keeps its folder: what differs is told before
-its results are replaced. Trackers and judges change no artifact and therefore no name.
+So runs with different overrides have different folders. An edited YAML keeps its folder; the difference is reported
+before its results are replaced. Trackers and judges change no artifact and therefore no name.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from typing import Any
 
 import yaml
 
-from flows.batch.find_cases import safe_id
+from flows.case_files.case_folder import CONFIG
+from flows.case_files.find_cases import safe_id
 from flows.study.cross_product import name_of
 from sgcad_core.config import Config
 
-FILE = "config.yaml"
 NO_ARTIFACT = ("judge", "tracker")
 _LOGIN = re.compile(r"//[^/@\s]+@")
 
 
 def named(config: Config, overrides: Sequence[str]) -> Config:
-    """The config under a name of its own where overrides made it another one."""
+    """The config, renamed by its overrides if they change results."""
     pairs = (text.partition("=") for text in overrides)
     factors = {key: yaml.safe_load(value) for key, _, value in pairs if key.split(".")[0] not in NO_ARTIFACT}
     if not factors:
@@ -35,16 +35,16 @@ def named(config: Config, overrides: Sequence[str]) -> Config:
 
 
 def write(folder: Path, config: Config) -> None:
-    """Write the effective config into the folder of its results, without logins of addresses."""
+    """Write the effective config into the folder of its results; logins in addresses are removed."""
     folder.mkdir(parents=True, exist_ok=True)
     text = yaml.safe_dump(dict(config.raw), sort_keys=False, allow_unicode=True)
-    (folder / FILE).write_text(_LOGIN.sub("//", text), encoding="utf-8")
+    (folder / CONFIG).write_text(_LOGIN.sub("//", text), encoding="utf-8")
 
 
 def replaced(folder: Path, config: Config) -> str:
-    """One line if the folder holds results of another config of that name, else an empty text."""
+    """A warning if the folder holds results of a different config of that name, else an empty text."""
     try:
-        before = yaml.safe_load((folder / FILE).read_text(encoding="utf-8"))
+        before = yaml.safe_load((folder / CONFIG).read_text(encoding="utf-8"))
     except (OSError, ValueError, yaml.YAMLError):
         return ""
     held = sum(1 for _ in folder.glob("*/result.json"))
@@ -52,8 +52,8 @@ def replaced(folder: Path, config: Config) -> str:
     if not held or not keys:
         return ""
     return (
-        f"{folder} holds {held} results of another {config.name}: {', '.join(keys)} differ. They are replaced case by "
-        "case as they are done again; to keep them, choose another --out or rename the YAML"
+        f"{folder} holds {held} results of another {config.name}: {', '.join(keys)} differ. Each is replaced when "
+        "its case runs again; to keep them, choose another --out or rename the YAML"
     )
 
 
@@ -64,7 +64,7 @@ def _differing(before: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[st
 
 
 def _plain(entry: Any) -> Any:
-    """A plugin that is only named, as a mapping."""
+    """A plugin given by name only, as a mapping."""
     if isinstance(entry, list):
         return [_plain(inner) for inner in entry]
     return {"name": entry} if isinstance(entry, str) else entry

@@ -1,8 +1,8 @@
-"""A batch: configs times cases, planned whole before anything starts, and the processes that work on it.
+"""A batch: configs times cases, planned before anything starts, and the processes that run it.
 
-Knows no Prefect: the flow only waits for what happens here, so that cases already run while Prefect's
-server is still starting. A config without a model runs in worker processes (numpy and XML hold the
-interpreter's lock); a config with one runs in threads of this process, where its weights are loaded once.
+Independent of Prefect, whose flow only waits for the jobs, so that cases run while its server is still starting. A
+config without a model runs in worker processes (numpy and XML hold the interpreter's lock); a config with a model runs
+in threads of this process, where its weights are loaded once.
 """
 
 from __future__ import annotations
@@ -17,14 +17,15 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from flows.batch import config_folder, find_cases, stage_cache
-from flows.batch.find_cases import Case
-from flows.batch.stage_cache import Sharing
+from flows.batch import config_folder
 from flows.batch.worker import Order
-from flows.case import case_folder, chain
-from flows.case.case_folder import CaseFolder
-from flows.case.chain import Ending
-from flows.case.step_log import OnStep, unheard
+from flows.case import run_case
+from flows.case.run_case import Ending
+from flows.case.step_log import OnStep, ignore_step
+from flows.case_files import case_folder, find_cases, stage_cache
+from flows.case_files.case_folder import CaseFolder
+from flows.case_files.find_cases import Case
+from flows.case_files.stage_cache import Sharing
 from flows.study.arm_config import load_config
 from sgcad_core.asking.refine import OnAttempt
 from sgcad_core.config import Config
@@ -34,9 +35,9 @@ from sgcad_core.system import temp_folders
 from sgcad_core.system.worker_process import Worker
 
 CASE_LIMIT_S = 600.0
-"""A case without a model that takes longer hangs: its process is ended and the case fails."""
+"""Time limit of a case without a model; then its process is ended and the case fails."""
 MAX_JOBS = 8
-"""Cases at a time without --jobs: cores where nobody is asked, as many where a model answers several at once."""
+"""Cases at a time without --jobs: at most the cores without a model; with one, several share its batch."""
 
 
 @dataclass(frozen=True)
@@ -48,21 +49,20 @@ class Job:
     digest: str
     folder: CaseFolder
     sharing: Sharing | None = None
-    """Where its stages are shared with other configs' jobs; None: nowhere."""
+    """Access to stages shared with other configs; None: stages are not shared."""
 
     @property
     def name(self) -> str:
-        """As task runs and the log call it."""
+        """Name in task runs and the log: <config>/<case>."""
         return f"{self.config.name}/{self.case.id}"
 
 
 @dataclass(frozen=True)
 class Batch:
-    """Everything to do, and where it goes.
+    """Configs, cases and the output folder of a batch.
 
-    `jobs` cases are on their way at a time, those without a model in `processes`. `fresh` does finished cases
-    again. `flow` and `title` are the names of the flow and of its run. `shelf` is the folder where configs share
-    their stages' results; None: they do not.
+    `jobs` cases run at a time, those without a model in `processes`. `fresh` repeats finished cases. `flow` and
+    `title` name the flow and its run. `shelf` is the folder of stages shared by configs; None: stages are not shared.
     """
 
     configs: tuple[Config, ...]
@@ -76,7 +76,7 @@ class Batch:
     shelf: Path | None = None
 
     def plan(self) -> tuple[Job, ...]:
-        """All jobs, config by config. Every report and every config is fingerprinted once."""
+        """All jobs, config by config. Each report and each config is fingerprinted once."""
         sources = {case: find_cases.source_digest(case.source) for case in self.cases}
         return tuple(job for config in self.configs for job in self._jobs(config, sources))
 
@@ -97,14 +97,14 @@ def batch_of(
     jobs: int | None = None,
     fresh: bool = False,
 ) -> Batch:
-    """Check a whole batch. Raises ConfigError with every fault; nothing is started or written but `out`."""
+    """Check a whole batch. Raises ConfigError with every fault; only `out` is created."""
     return batch_over(found, _load_all(configs, tuple(overrides)), out, jobs, fresh)
 
 
 def batch_over(
     found: Sequence[Case], configs: tuple[Config, ...], out: Path, jobs: int | None = None, fresh: bool = False
 ) -> Batch:
-    """`batch_of` with configs that are loaded already. Raises MissingTool too: a simulator's program is not there."""
+    """`batch_of` with loaded configs. Raises MissingTool too, if a simulator's program is not installed."""
     if jobs is not None and jobs < 1:
         raise ConfigError(f"--jobs {jobs}: at least 1 is needed")
     for config in configs:
@@ -146,29 +146,29 @@ def cores() -> int:
 
 # ------------------------------------------------------------------ doing it
 OnTurn = Callable[[Job, str], None]
-"""Told, from any thread, that an attempt of a job with a model begins; its name is such as "road[2]"."""
+"""Called from any thread when an attempt of a job with a model begins; its name is such as "road[2]"."""
 
 
 @dataclass
-class Crew:
-    """Does jobs: those without a model at once in the background, those with one when they are waited for."""
+class JobRunner:
+    """Runs jobs: those without a model at once in the background, those with a model when they are waited for."""
 
     batch: Batch
     on_turn: OnTurn | None = None
     done: frozenset[str] = frozenset()
-    """Jobs that this command has done already, under a crew before: not done again where all is done anew."""
+    """Jobs finished by an earlier runner of this command: not repeated by `fresh`."""
     stopping: threading.Event = field(default_factory=threading.Event)
     _begun: dict[str, Future[Ending]] = field(default_factory=dict)
-    """Jobs in worker processes that nobody has asked for yet; an ending is handed out once and not kept."""
+    """Jobs in worker processes whose ending was not asked for yet; an ending is handed out once."""
     _workers: list[Worker] = field(default_factory=list)
     _idle: queue.SimpleQueue[Worker] = field(default_factory=queue.SimpleQueue)
     _threads: ThreadPoolExecutor | None = None
 
     def __post_init__(self) -> None:
-        self._places = threading.Semaphore(self.batch.jobs)  # a deployed flow has more threads than that
+        self._places = threading.Semaphore(self.batch.jobs)  # a deployed flow has more threads
 
     def begin(self, plan: Sequence[Job]) -> None:
-        """Start what needs no model, and load the first model that will be asked while the server starts."""
+        """Start jobs without a model, and load the first model needed while the server starts."""
         for config in {job.config.name: job.config for job in plan}.values():
             config_folder.write(self.batch.out / config.name, config)
         asking = (job for job in plan if job.config.backbone and self.reusable(job) is None)
@@ -186,13 +186,13 @@ class Crew:
             self._begun[job.name] = self._threads.submit(self._in_worker, job)
 
     def reusable(self, job: Job) -> Ending | None:
-        """The ending of a job that is done already."""
+        """The ending of a finished job, else None."""
         anew = self.batch.fresh and job.name not in self.done
         result = None if anew else job.folder.finished(job.digest)
         return Ending(result, reused=True) if result is not None else None
 
-    def finish(self, job: Job, on_attempt: OnAttempt, tell: OnStep = unheard) -> Ending:
-        """Wait for a job, or do it here and now, telling every step. Raises MissingTool, ConfigError."""
+    def finish(self, job: Job, on_attempt: OnAttempt, tell: OnStep = ignore_step) -> Ending:
+        """Wait for a job, or run it now, reporting every step. Raises MissingTool, ConfigError."""
         if job.name in self._begun:
             return self._begun.pop(job.name).result()
         if done := self.reusable(job):
@@ -201,10 +201,10 @@ class Crew:
         with self._places:
             self._check()
             about = job.config, job.case, self.batch.out, job.digest, watched
-            return chain.run_case(*about, sharing=job.sharing, tell=tell)
+            return run_case.run_case(*about, sharing=job.sharing, tell=tell)
 
     def began(self, job: Job) -> bool:
-        """Whether the job runs in a worker process and its ending waits (its steps are then told with that)."""
+        """Whether the job runs in a worker process, which returns its steps with its ending."""
         return job.name in self._begun
 
     def _in_worker(self, job: Job) -> Ending:
@@ -215,13 +215,13 @@ class Crew:
             ending = self._answered(worker, order)
         except SimulationFailed as death:
             self._check()
-            ending = chain.leave_failed(job.config, job.case, self.batch.out, job.digest, str(death))
+            ending = run_case.write_failed(job.config, job.case, self.batch.out, job.digest, str(death))
         finally:
             self._idle.put(worker)
         return ending
 
     def _answered(self, worker: Worker, order: Order) -> Ending:
-        """What a worker makes of a case; one that dies gets a successor, since it need not be the report's fault."""
+        """A worker's ending of a case; a dead worker is replaced once, since the report may not be the cause."""
         try:
             ending: Ending = worker.call(order, timeout_s=CASE_LIMIT_S)
         except ProcessDied:
@@ -243,7 +243,7 @@ class Crew:
             raise Interrupted
 
     def stop(self) -> None:
-        """Begin nothing more and end the worker processes; a case's folder appears whole or not at all."""
+        """Start no more jobs and end the worker processes; a case's folder appears whole or not at all."""
         self.stopping.set()
         if self._threads:
             self._threads.shutdown(wait=False, cancel_futures=True)
@@ -251,7 +251,7 @@ class Crew:
             worker.kill()
 
     def close(self) -> None:
-        """End the worker processes of a batch that is done."""
+        """End the worker processes of a finished batch."""
         if self._threads:
             self._threads.shutdown(wait=True)
         for worker in self._workers:
@@ -259,9 +259,9 @@ class Crew:
 
 
 def _load(model: Backbone) -> None:
-    with suppress(Exception):  # told by the first question, to whom it belongs
+    with suppress(Exception):  # the first question reports the fault with its case
         model.load()
 
 
 class Interrupted(BaseException):
-    """The batch is being stopped: no result of this case, not even a failed one."""
+    """The batch is being stopped: this case gets no result."""

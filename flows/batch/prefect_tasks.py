@@ -1,8 +1,8 @@
-"""What Prefect shows of a case: a task run a step, with true times, states and what it waited for.
+"""A Prefect task run per step of a case, with true times, states and predecessors.
 
-Steps ran elsewhere (a worker process, the case's thread), so nothing is run here: their states are sent as the events
-that Prefect's own client sends, 1.5 ms of processor time each with all that the server does about it; a task of
-Prefect's would cost as much again and know only when it was told. Knows Prefect's events; no case.
+Steps run elsewhere (a worker process, the case's thread), so nothing is run here: their states are sent as the events
+that Prefect's own client sends, 1.5 ms of processor time each including the server. A Prefect task would cost as much
+again and would know only the time of the report.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ TYPES: Mapping[Kind, str] = {"completed": "COMPLETED", "cancelled": "CANCELLED",
 
 
 @dataclass(frozen=True)
-class Graph:
-    """Where a case's steps are shown: in a flow run, inside of a task run."""
+class StepRuns:
+    """Shows a case's steps as task runs inside the case's task run."""
 
     flow_run: str
     task_run: str
     every: bool = True
-    """False: attempts only, for a server that writes every state by itself."""
+    """False: attempts only, for a server that writes states one by one."""
 
     def tell(self, step: Step) -> None:
         """Show that a step begins or has ended (an `OnStep`).
 
-        What is told twice, as the beginning of a step that is gone on with, has one id: a server takes a task run's
-        states of one moment for a fault, and loses all others that it writes with them.
+        An event sent twice, such as the beginning of a continued step, has one id: a server rejects two states of a
+        task run at one time, together with all others of the same batch.
         """
         if not self.shows(step):
             return
@@ -72,7 +72,7 @@ class Graph:
         }
 
     def _task_run(self, step: Step) -> dict[str, Any]:
-        """The row as it is now: upserted by id."""
+        """The task run's current row: upserted by id."""
         began = _when(step.began).isoformat()
         inside: dict[str, Any] = {"__parents__": [_input(self.task_run)]}
         found = {
@@ -85,7 +85,7 @@ class Graph:
         return found
 
     def shows(self, step: Step) -> bool:
-        """Whether the step is one that is shown here."""
+        """Whether the step is shown."""
         return self.every or step.name.partition("[")[0] in ("road", "scenario")
 
     def id_of(self, name: str) -> str:

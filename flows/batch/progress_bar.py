@@ -1,6 +1,6 @@
-"""What a person sees while a batch runs: a bar that moves with every attempt, or lines where there is no terminal.
+"""Progress of a batch: a bar that moves with every attempt, or lines without a terminal.
 
-Everything goes to stderr; standard output is for the answer.
+Everything goes to stderr; stdout is for the answer.
 """
 
 from __future__ import annotations
@@ -16,21 +16,20 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn
 
 from flows.batch.plan_batch import Job
 from flows.batch.summary import Tally
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
 from flows.terminal import escape
 from sgcad_core.result import counts_of
 
 LINES_AT_ONCE = 50
-"""Batches up to this size tell every case in a line; larger ones one line in LINE_EVERY_S."""
+"""Batches up to this size print a line per case; larger ones a line every LINE_EVERY_S."""
 LINE_EVERY_S = 10.0
 SHARE = {"road": 0.1, "scenario": 0.55}
-"""How far a case is, as a share of it, when its first attempt of a stage begins; each further one goes a third of
-what is left of that stage."""
+"""Progress of a case when its first attempt of a stage begins; each further attempt adds a third of the rest."""
 
 
 @dataclass
-class Watch:
-    """Told of attempts and endings, from any thread; calls what shows them."""
+class BatchProgress:
+    """Counts attempts and endings from any thread, and moves the bar or prints lines."""
 
     tally: Tally
     total: int
@@ -85,20 +84,20 @@ class Watch:
 
 
 def _lacking(ending: Ending) -> str:
-    """How much of what is told lacks, where anything does."""
+    """The number of things told that lack, in words; "" if none lacks."""
     account = counts_of(ending.result)
     return f", {account['lacking']} of {account['told']} told lacking" if account and account["lacking"] else ""
 
 
 @contextmanager
-def watching(tally: Tally) -> Iterator[Watch]:
+def batch_progress(tally: Tally) -> Iterator[BatchProgress]:
     """A watch over a batch while the block lasts."""
     total = len(tally.batch.configs) * len(tally.batch.cases)
     console = Console(stderr=True, emoji=False, highlight=False)
     if not console.is_terminal:
-        yield Watch(tally, total, console=console)
+        yield BatchProgress(tally, total, console=console)
         return
     count = TextColumn("{task.fields[done]}/{task.total:.0f}")
     columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), count, TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as bar:
-        yield Watch(tally, total, bar, bar.add_task("starting", total=total, done=0))
+        yield BatchProgress(tally, total, bar, bar.add_task("starting", total=total, done=0))

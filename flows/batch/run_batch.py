@@ -1,6 +1,6 @@
-"""From a checked batch to its end: what is done already, the workers, the server, the flow, in this order.
+"""A checked batch run to its end: finished jobs, workers, server, flow, in this order.
 
-Knows when to import Prefect, and that a batch with nothing left to do needs none.
+Prefect is imported only if a job is left to run.
 """
 
 from __future__ import annotations
@@ -11,20 +11,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from flows.batch import track_cases
-from flows.batch.plan_batch import Batch, Crew, Job, OnTurn
+from flows.batch.plan_batch import Batch, Job, JobRunner, OnTurn
 from flows.batch.track_cases import OnEnding
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
 from flows.server import Server, ServerLost, prefect_server
 from sgcad_core import settings
 
 
 @dataclass(frozen=True)
 class Cost:
-    """What a batch cost beside its cases: processor seconds of this process (planning, Prefect's client, tracking; a
-    model too where one runs here) and of a Prefect server of our own (None: it was the user's)."""
+    """Cost of a batch beside its cases: processor seconds of this process (planning, Prefect's client, tracking, and a
+    model if one runs here) and of the command's own Prefect server (None: the user's server)."""
 
     done: int
-    """Cases that were done, without those found finished."""
+    """Cases run now, without those found finished."""
     elapsed_s: float
     own_s: float = 0.0
     server_s: float | None = None
@@ -35,25 +35,25 @@ def evaluate(
 ) -> Cost:
     """Run a batch, or some of its jobs. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
 
-    Finished cases stay, whatever happens.
+    Finished cases stay on disk in any event.
     """
     settings.quiet_libraries()
     started, spent = time.perf_counter(), time.process_time()
     plan = batch.plan() if plan is None else plan
-    crew = Crew(batch, on_turn)
-    if (done := _all_done(plan, crew)) is not None:
+    runner = JobRunner(batch, on_turn)
+    if (done := _all_done(plan, runner)) is not None:
         for job, ending in done:
             on_ending(job, ending, "")
         return Cost(0, time.perf_counter() - started, time.process_time() - spent)
-    fresh = sum(crew.reusable(job) is None for job in plan)
-    server_s = _run(batch, plan, crew, on_ending)
+    fresh = sum(runner.reusable(job) is None for job in plan)
+    server_s = _run(batch, plan, runner, on_ending)
     return Cost(fresh, time.perf_counter() - started, time.process_time() - spent, server_s)
 
 
-def _run(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> float | None:
-    """Do what is left to do; processor seconds of the server.
+def _run(batch: Batch, plan: Sequence[Job], runner: JobRunner, on_ending: OnEnding) -> float | None:
+    """Run the jobs that are left; processor seconds of the server.
 
-    A server of our own that is lost gets one successor, since cases do not need it to be done: it only shows them.
+    A lost server of the command is replaced once: cases do not need it, it only shows them.
     """
     told: set[str] = set()
 
@@ -63,27 +63,27 @@ def _run(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> 
             on_ending(job, ending, untracked)
 
     try:
-        return _under_a_server(batch, plan, crew, tell)
+        return _under_a_server(batch, plan, runner, tell)
     except ServerLost as lost:
-        logging.getLogger(__name__).warning("%s; now another is started", lost.how)
-    return _under_a_server(batch, plan, Crew(batch, crew.on_turn, frozenset(told)), tell)
+        logging.getLogger(__name__).warning("%s; another one is started", lost.how)
+    return _under_a_server(batch, plan, JobRunner(batch, runner.on_turn, frozenset(told)), tell)
 
 
-def _under_a_server(batch: Batch, plan: Sequence[Job], crew: Crew, on_ending: OnEnding) -> float | None:
+def _under_a_server(batch: Batch, plan: Sequence[Job], runner: JobRunner, on_ending: OnEnding) -> float | None:
     try:
         with prefect_server() as server:
             if server:  # it takes seconds to start
-                crew.begin(plan)
-            from flows.batch.evaluate_flow import run_flow
+                runner.begin(plan)
+            from flows.batch.batch_flow import run_flow
 
             if server:
                 server.wait()
-            run_flow(batch, plan, crew, on_ending, lasting=server is None)
+            run_flow(batch, plan, runner, on_ending, lasting=server is None)
             server_s = _processor_s(server) if server else None
     except BaseException:
-        crew.stop()
+        runner.stop()
         raise
-    crew.close()
+    runner.close()
     return server_s
 
 
@@ -97,11 +97,11 @@ def _processor_s(server: Server) -> float | None:
     return float(times.user + times.system)
 
 
-def _all_done(plan: Sequence[Job], crew: Crew) -> list[tuple[Job, Ending]] | None:
-    """Endings of a batch whose cases are all finished and tracked; None if there is anything to do."""
+def _all_done(plan: Sequence[Job], runner: JobRunner) -> list[tuple[Job, Ending]] | None:
+    """Endings of a batch whose cases are all finished and tracked; None if a job is left."""
     done = []
     for job in plan:
-        ending = crew.reusable(job)
+        ending = runner.reusable(job)
         if ending is None or not track_cases.tracked(job):
             return None
         done.append((job, ending))

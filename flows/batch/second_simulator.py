@@ -1,13 +1,11 @@
-"""What a second simulator made of a batch: a table of how many scenarios loaded, moved alike and crashed as declared.
+"""A second simulator's verdicts on a batch: how many scenarios loaded, moved alike and crashed as declared.
 
-Reads the `judge` part of results; also judges a folder of finished runs again. Knows no simulator.
+Reads the `judge` part of results. Knows no simulator.
 """
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,21 +13,14 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from flows.case import case_folder
 from flows.terminal import escape
-from sgcad_core.case.records import ActorInfo, RoadNetwork, Scenario
-from sgcad_core.errors import BadInput
-from sgcad_core.execution.compare_executions import TOLERANCE_M, Judgement, judge
-from sgcad_core.execution.playback import execution_of
-from sgcad_core.interfaces import Simulator
-from sgcad_core.records.specs import Contact
+from sgcad_core.execution.compare_executions import TOLERANCE_M, Judgement
 
 MAX_TOLD = 10
 
 
-# ------------------------------------------------------------------ the table
 def show(console: Console, results: Mapping[str, Sequence[Mapping[str, Any]]]) -> None:
-    """Print the table of all configs and the first few disagreements; nothing where nobody was judged."""
+    """Print the table of all configs and the first disagreements; nothing where no case was judged."""
     judged = {name: [r for r in those if "judge" in r] for name, those in results.items()}
     if not any(judged.values()):
         return
@@ -73,32 +64,3 @@ def _share(hits: Sequence[bool]) -> str:
 def _wrong(result: Mapping[str, Any]) -> str:
     told = Judgement.model_validate({k: result["judge"][k] for k in Judgement.model_fields}).lines()
     return "; ".join(told)
-
-
-# ------------------------------------------------------------------ a folder of runs
-def judged_runs(folder: Path, simulator: Simulator) -> Iterator[dict[str, Any]]:
-    """result.json of every executed scenario file under a folder, with what the simulator makes of it now.
-
-    The files are believed: trajectories.csv is our playing, scenario.xosc and road.xodr are what is judged. Raises
-    BadInput where there is none, MissingTool.
-    """
-    files = sorted(folder.glob("**/scenario.xosc"))
-    cases = [file.parent for file in files if (file.parent / "trajectories.csv").is_file()]
-    if not cases:
-        raise BadInput(f"{folder}: no scenario.xosc with a trajectories.csv beside it; name a runs folder")
-    for case in cases:
-        yield _judged(case, simulator)
-
-
-def _judged(case: Path, simulator: Simulator) -> dict[str, Any]:
-    result: dict[str, Any] = json.loads((case / "result.json").read_text(encoding="utf-8"))
-    actors = tuple(ActorInfo.model_validate(actor) for actor in result["actors"])
-    declared = result["collision"]["declared"]
-    scenario = Scenario(
-        xosc=(case / "scenario.xosc").read_text(encoding="utf-8"),
-        actors=actors,
-        declared=Contact.model_validate(declared) if declared else None,
-    )
-    network = RoadNetwork(xodr=(case / "road.xodr").read_text(encoding="utf-8"))
-    ours = execution_of("file", scenario, case_folder.read_trajectories(case / "trajectories.csv"))
-    return result | {"judge": judge(simulator, ours, scenario, network).summary()}

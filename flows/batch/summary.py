@@ -1,6 +1,4 @@
-"""What a person sees of a batch at its end: a short table, reasons, where to look; of one case, what happens in it.
-
-Writes to stdout; what is shown on the way stands in flows/batch/progress_bar.py."""
+"""Summary of a batch on stdout: a table, reasons, paths; of a single case also its contact and account."""
 
 from __future__ import annotations
 
@@ -17,8 +15,8 @@ from rich.text import Text
 from flows.batch import second_simulator
 from flows.batch.plan_batch import Batch, Job
 from flows.case import case_in_words
-from flows.case.case_folder import CaseFolder
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
+from flows.case_files.case_folder import CaseFolder
 from flows.terminal import escape
 from sgcad_core.result import STATUSES, as_declared, counts_of
 
@@ -26,11 +24,11 @@ MAX_REASONS = 10
 """Reasons printed at the end; all of them stand in the result.json files."""
 
 TABLE_WIDTH = 104
-"""Columns where the output is no terminal; rich would take 80 and drop a column."""
+"""Columns without a terminal; rich would take 80 and drop a column."""
 
 
 FEW = 10
-"""Of so many endings everything is kept; of more what the summary tells, since a result is some 50 kB of memory."""
+"""Up to this number of endings whole results are kept; a result takes about 50 kB of memory."""
 _KEPT = ("case", "status", "reason", "seconds", "judge", "person", "near_crash")
 
 
@@ -72,7 +70,7 @@ class Tally:
 
 
 def _brief(result: Mapping[str, Any]) -> dict[str, Any]:
-    """What the summary of a long batch tells of a result."""
+    """The part of a result that the summary of a long batch needs."""
     found = {key: result[key] for key in _KEPT if key in result}
     if "collision" in result:
         found["collision"] = {key: result["collision"][key] for key in ("declared", "realised")}
@@ -83,7 +81,7 @@ def _brief(result: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def show(tally: Tally) -> None:
-    """Print the table, reasons, and where to look."""
+    """Print the table, the reasons and the paths of the results."""
     console = Console(emoji=False, highlight=False)
     console.width = max(console.width, TABLE_WIDTH)
     console.print(_table(tally))
@@ -95,7 +93,7 @@ def show(tally: Tally) -> None:
     if page := tally.first_player():
         console.print(escape(f"look at: {page}"), soft_wrap=True)
     if tally.untracked:
-        lost = f"{len(tally.untracked)} not logged, run again to log them; {tally.untracked[0]}"
+        lost = f"{len(tally.untracked)} not logged; run the same command again to log them; {tally.untracked[0]}"
         console.print(escape(lost), soft_wrap=True)
 
 
@@ -114,7 +112,7 @@ def _table(tally: Tally) -> Table:
 
 
 def _whole(endings: list[Ending]) -> Text:
-    """In how many of the scenarios nothing told is lacking: green only where that is so in all."""
+    """Number of scenarios that lack nothing told; green if that is all of them."""
     known = [account for e in endings if (account := counts_of(e.result))]
     whole = sum(account["verdict"] == "whole" for account in known)
     if not known:
@@ -123,22 +121,18 @@ def _whole(endings: list[Ending]) -> Text:
 
 
 def _accounts(tally: Tally) -> list[str]:
-    """What the scenarios have and lack of what their reports tell, summed up, and the first that lack something; of one
-    case its account is told anyway."""
+    """Sums of what the scenarios have and lack, and the first that lack something; empty for a single case."""
     known = [(job, account) for job, e in tally.endings if (account := counts_of(e.result))]
     if len(tally.endings) < 2 or not known:
         return []
     sums = {name: sum(account[name] for _, account in known) for name in ("told", "has", "lacking", "assumed")}
     lines = ["of {told} things told the scenarios have {has} and lack {lacking}; {assumed} are assumed".format(**sums)]
     lacking = [(job, account) for job, account in known if account["verdict"] == "lacking"]
-    lines += [
-        f"{job.name}: lacks {case_in_words.lacking_in_words(account, 3)}" for job, account in lacking[:MAX_REASONS]
-    ]
-    return lines + ([f"... and {len(lacking) - MAX_REASONS} more"] if len(lacking) > MAX_REASONS else [])
+    return lines + _first([f"{job.name}: lacks {case_in_words.lacking_in_words(a, 3)}" for job, a in lacking])
 
 
 def _realised(endings: list[Ending]) -> str:
-    """Of the executed cases that declare a contact or a near crash, in how many it came about so."""
+    """Number of executed cases whose declared contact or near crash was observed, of those that declare one."""
     declared = [hit for e in endings if (hit := as_declared(e.result)) is not None]
     return f"{sum(declared)}/{len(declared)}" if declared else "-"
 
@@ -149,17 +143,16 @@ def _seconds(endings: list[Ending]) -> str:
 
 
 def _limits(tally: Tally) -> list[str]:
-    """What of the reports was beyond a limit of ours, the first few; of one case its notes are told anyway."""
+    """The first notes on limits of the program; empty for a single case, whose notes are printed anyway."""
     if len(tally.endings) < 2:
         return []
     noted = ((job.name, note) for job, e in tally.endings for note in e.result["notes"])
     told = [f"{name}: {note['text']}" for name, note in noted if note["kind"] == "limit"]
-    more = [f"... and {len(told) - MAX_REASONS} more"] if len(told) > MAX_REASONS else []
-    return [line[:400] for line in told[:MAX_REASONS]] + more
+    return _first(told)
 
 
 def _people(tally: Tally) -> list[str]:
-    """How many facts people gave, and how many of them were read otherwise."""
+    """Number of facts given by people, and of those that were read differently."""
     said = [given for _, e in tally.endings if (given := e.result.get("person") or {}).get("facts")]
     if not said:
         return []
@@ -168,11 +161,16 @@ def _people(tally: Tally) -> list[str]:
 
 
 def _reasons(tally: Tally) -> list[str]:
-    """Why cases ended otherwise, the first few."""
+    """The first reasons of cases that were not generated."""
     told = [
         f"{job.name}: {ending.result['status']}: {ending.result['reason']}"
         for job, ending in tally.endings
         if ending.result["status"] != "generated"
     ]
-    more = [f"... and {len(told) - MAX_REASONS} more"] if len(told) > MAX_REASONS else []
-    return [line[:400] for line in told[:MAX_REASONS]] + more
+    return _first(told)
+
+
+def _first(lines: list[str]) -> list[str]:
+    """The first lines, shortened, and the number of the others."""
+    more = [f"... and {len(lines) - MAX_REASONS} more"] if len(lines) > MAX_REASONS else []
+    return [line[:400] for line in lines[:MAX_REASONS]] + more

@@ -1,8 +1,7 @@
-"""Handing finished cases to their trackers, each once, whatever became of the batch in between.
+"""Finished cases logged to their trackers, each once, also after interrupted batches.
 
-`following` encloses a batch: it tells every tracker what is about to run (`Arm`) and that it has ended. A mark in
-the config's folder stands between the two, so that a batch killed after its last case is still ended by the next.
-Knows the registry's interfaces; no Prefect, no MLflow.
+`tracked_batch` encloses a batch: it tells every tracker what is about to run (`Arm`) and when it has ended. A mark in
+the config's folder exists in between, so that the next batch ends one that was killed after its last case.
 """
 
 from __future__ import annotations
@@ -16,19 +15,18 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from flows.batch import find_cases
-from flows.batch.find_cases import Case
+from flows.batch import machine
 from flows.batch.plan_batch import Job
-from flows.case.chain import Ending
-from flows.study import machine
-from flows.study.plan import dataset_digest
+from flows.case.run_case import Ending
+from flows.case_files import find_cases
+from flows.case_files.find_cases import Case
 from sgcad_core.case.tracker_arm import Arm, Dataset
 from sgcad_core.config import SCALARS, SINGLE, Config
 from sgcad_core.errors import SgcadError
 from sgcad_core.interfaces import Plugin
 
 OnEnding = Callable[[Job, Ending, str], None]
-"""Told of every case as it ends, from one thread; the text says why it could not be tracked, if it could not."""
+"""Called for every case as it ends, from one thread; the text says why it was not tracked, else it is empty."""
 
 PLAIN = {
     "database is locked": "another program keeps the tracker's database locked: end it (`fuser FILE` names it)",
@@ -36,18 +34,18 @@ PLAIN = {
     "No space left": "no room is left on the disk: make some",
     "readonly database": "the tracker's database cannot be written: make it writable (chmod u+w)",
 }
-"""What databases and disks say, and how a person is told."""
+"""Messages of databases and disks, and the text with a remedy that replaces them."""
 GIVE_UP_AFTER = 2
-"""Cases in a row that could not be logged, each after a database's own patience; the next run logs the rest."""
+"""Failed cases in a row after which logging stops; the next run logs the rest."""
 _failed: dict[str, int] = {}
 """Failures in a row, by tracker."""
 
 OPEN = ".tracking"
-"""In a config's folder while its tracker waits for more cases."""
+"""Mark in a config's folder while its tracker waits for more cases."""
 
 
 def track_safely(job: Job, ending: Ending) -> str:
-    """`track`; why it failed, or an empty text. Raises ConfigError: a tracker that can never work."""
+    """Log a case; why that failed, or an empty text. Raises ConfigError for a tracker that can never work."""
     mark = job.config.tracker.model_dump_json()
     if _failed.get(mark, 0) >= GIVE_UP_AFTER:
         return "not tried, since the cases before it could not be logged"
@@ -57,13 +55,13 @@ def track_safely(job: Job, ending: Ending) -> str:
         raise
     except Exception as fault:  # noqa: BLE001 - the case is safe on disk: a locked database must not end the batch
         _failed[mark] = _failed.get(mark, 0) + 1
-        return plainly(fault)
+        return fault_in_words(fault)
     _failed.pop(mark, None)
     return ""
 
 
-def plainly(fault: Exception) -> str:
-    """A tracker's fault in one line with its remedy; of a database's, what it says itself and not the statement."""
+def fault_in_words(fault: Exception) -> str:
+    """A tracker's fault in one line with its remedy; of a database's fault its message without the statement."""
     for sign, plain in PLAIN.items():
         if sign in str(fault):
             return plain
@@ -73,7 +71,7 @@ def plainly(fault: Exception) -> str:
 
 
 def track(job: Job, ending: Ending) -> None:
-    """Log a case to its tracker, once: a case that a killed batch had no time to log is logged now."""
+    """Log a case to its tracker, once; a case that a killed batch did not log is logged now."""
     if _has(job):
         return
     tracker = job.config.tracker
@@ -84,7 +82,7 @@ def track(job: Job, ending: Ending) -> None:
 
 
 def tracked(job: Job) -> bool:
-    """Whether the job's tracker has its case already and waits for no end of the batch."""
+    """Whether the job's tracker has its case and its batch was ended."""
     return _has(job) and not _open(job).exists()
 
 
@@ -93,7 +91,7 @@ def _has(job: Job) -> bool:
 
 
 def _mark(job: Job) -> str:
-    """What identifies a tracker, and the place where it logs, to a case's folder."""
+    """Identity of a tracker and of the place where it logs, as noted in a case's folder."""
     tracker = job.config.tracker
     return f"{type(tracker).__module__} {tracker.model_dump_json()} {tracker.identity(job.folder.out)}".rstrip()
 
@@ -104,10 +102,10 @@ def _open(job: Job) -> Path:
 
 # ------------------------------------------------------------------ before the first case and after the last
 @contextmanager
-def following(plan: Sequence[Job]) -> Iterator[None]:
-    """Tell the trackers what is about to run, and how it ended. Raises ConfigError: a tracker that can never work.
+def tracked_batch(plan: Sequence[Job]) -> Iterator[None]:
+    """Tell the trackers what is about to run, and how it ended. Raises ConfigError for a tracker that can never work.
 
-    A config whose cases are all tracked is not told again.
+    The tracker of a config whose cases are all tracked is not called.
     """
     _failed.clear()
     arms = [(jobs[0], _arm(jobs)) for jobs in _by_config(plan) if not all(tracked(job) for job in jobs)]
@@ -120,7 +118,7 @@ def following(plan: Sequence[Job]) -> Iterator[None]:
         yield
         finished = True
     except Exception as broken:
-        fault = plainly(broken)
+        fault = fault_in_words(broken)
         raise
     finally:
         for job, arm in arms:
@@ -131,15 +129,15 @@ def following(plan: Sequence[Job]) -> Iterator[None]:
 
 
 def _safely(job: Job, tell: Callable[[], None]) -> bool:
-    """Whether a tracker could be told; the batch goes on without it, and the next one tells it again."""
+    """Whether a call of a tracker succeeded; the batch continues without it, and the next batch repeats the call."""
     try:
         tell()
     except SgcadError:
         raise
     except Exception as fault:  # noqa: BLE001 - the cases are safe on disk: a locked database must not end the batch
-        if not _failed.get(job.config.tracker.model_dump_json()):  # else it is told of the cases already
+        if not _failed.get(job.config.tracker.model_dump_json()):  # else the cases report it already
             told = logging.getLogger(__name__)
-            told.warning("%s: tracking, %s; then run again", job.config.name, plainly(fault))
+            told.warning("%s: not tracked: %s; then run the same command again", job.config.name, fault_in_words(fault))
         return False
     return True
 
@@ -167,9 +165,11 @@ def _arm(jobs: Sequence[Job]) -> Arm:
 
 @cache
 def dataset_of(found: tuple[Case, ...]) -> Dataset:
-    """The reports as one data set, whatever their order."""
+    """The reports as one data set, independent of their order."""
     place = Path(os.path.commonpath([case.source.resolve().parent for case in found]))
-    return Dataset(name=place.name or "cases", digest=dataset_digest(found), source=str(place), cases=len(found))
+    return Dataset(
+        name=place.name or "cases", digest=find_cases.dataset_digest(found), source=str(place), cases=len(found)
+    )
 
 
 _hardware = cache(machine.hardware)
@@ -177,7 +177,7 @@ _git_commit = cache(machine.git_commit)
 
 
 def params_of(config: Config) -> dict[str, Any]:
-    """The effective configuration but for the tracker: plugins by kind with name and all fields, scalars, version."""
+    """The effective configuration without the tracker: plugins by kind with name and fields, scalars, version."""
     found: dict[str, Any] = {"sgcad": version("sg-cadvlm")} | {key: getattr(config, key) for key in SCALARS}
     for kind in SINGLE:
         plugin = getattr(config, kind)

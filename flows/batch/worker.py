@@ -1,4 +1,4 @@
-"""The far end of a worker process: one case after the other, the plugins built once. Knows no Prefect."""
+"""The code of a worker process: runs one case after the other; plugins are built once per config."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from flows.batch.find_cases import Case
-from flows.batch.stage_cache import Sharing
-from flows.case.chain import Ending, run_case
+from flows.case.run_case import Ending, run_case
+from flows.case_files.find_cases import Case
+from flows.case_files.stage_cache import Sharing
 from sgcad_core.config import Config, build
 
 _configs: dict[str, Config] = {}
@@ -16,7 +16,7 @@ _configs: dict[str, Config] = {}
 
 @dataclass(frozen=True)
 class Order:
-    """A case to run: what can be pickled."""
+    """A case to run, as values that can be pickled."""
 
     raw: dict[str, Any]
     name: str
@@ -27,7 +27,7 @@ class Order:
 
 
 def run_in_worker(order: Order) -> Ending:
-    """`flows.case.chain.run_case` over there."""
+    """Run an order in this worker process."""
     name = order.name
     if name not in _configs:
         _configs[name] = build(order.raw, name, name)

@@ -1,4 +1,4 @@
-"""One case in words: who hits whom, what of the report the scenario lacks, and what was assumed.
+"""One case in words: its first contact, what of the report the scenario lacks, and what was assumed.
 
 Pure functions on the content of result.json; knows no file.
 """
@@ -15,7 +15,7 @@ MAX_LINES = 12
 
 
 def lines(results: Sequence[Mapping[str, Any]]) -> list[str]:
-    """What to tell of a batch of one case; nothing of others."""
+    """Lines about the case of a batch of one; empty for larger batches."""
     if len(results) != 1 or results[0]["status"] != "generated":
         return []
     result = results[0]
@@ -25,7 +25,7 @@ def lines(results: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def account_lines(result: Mapping[str, Any]) -> list[str]:
-    """What the report tells and the scenario has and lacks, and what was assumed."""
+    """Lines on what the scenario has and lacks of what the report tells, and what was assumed."""
     account = counts_of(result)
     if account is None:
         return []
@@ -39,7 +39,7 @@ def account_lines(result: Mapping[str, Any]) -> list[str]:
 
 
 def lacking_in_words(account: Mapping[str, Any], most: int) -> str:
-    """The first things that lack, in one line."""
+    """The first things that the scenario lacks, in one line."""
     lines = _lines(account, "lacks")
     return "; ".join(lines[:most]) + (f"; and {len(lines) - most} more" if len(lines) > most else "")
 
@@ -52,7 +52,7 @@ def _lines(account: Mapping[str, Any], kind: str) -> list[str]:
 
 
 def contact(result: Mapping[str, Any]) -> str:
-    """The first contact as observed, and how it stands to the declared one."""
+    """The observed first contact, compared with the declared one."""
     seen, told = result["collision"]["observed"], result["collision"]["declared"]
     if not seen:
         return f"no contact happens; the report tells that {_declared(told)}"
@@ -66,13 +66,13 @@ def contact(result: Mapping[str, Any]) -> str:
 
 
 def approach(near: Mapping[str, Any]) -> str:
-    """How near both come in a near crash, and whether that is what was declared."""
+    """The closest approach of a near crash, compared with the declared one."""
     seen, declared = near["observed"], near["declared"]
     if not seen:
-        return "a near crash is told; nobody else is near"
+        return "a near crash is told; no other actor is near"
     basis = "as the report tells" if declared["clearance_basis"] == "told" else "the usual distance of a near crash"
     wanted = basis if near["realised"] else f"{declared['clearance_m']:.1f} m was wanted"
-    return f"nobody touches: {seen['actor']} and {seen['other']} come to {seen['clearance_m']:.1f} m, {wanted}"
+    return f"no contact: {seen['actor']} and {seen['other']} come to {seen['clearance_m']:.1f} m, {wanted}"
 
 
 def _declared(told: Mapping[str, Any]) -> str:

@@ -1,7 +1,7 @@
-"""One case from report to folder: read, retrieve, road, scenario, simulate, measure, draw, write.
+"""One case from report to simulation: read, retrieve, road, scenario, simulate, measure.
 
-Knows the interfaces, not the plugins, and no Prefect: it runs in a thread, a worker process or a test
-alike. Here is the boundary that keeps a batch alive: whatever one case dies of is that case's result.
+Knows the interfaces, not the plugins, and no Prefect: it runs in a thread, a worker process or a test alike. Here is
+the boundary that keeps a batch alive: every fault of one case becomes that case's result.
 """
 
 from __future__ import annotations
@@ -11,16 +11,13 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, TypeVar
 
-from flows.batch import stage_cache
-from flows.batch.find_cases import Case
-from flows.batch.stage_cache import Sharing
-from flows.case import case_folder, person_facts
-from flows.case.model_calls import ask_of
-from flows.case.step_log import OnStep, Step, Steps, unheard
-from flows.case.write_case import leave
+from flows.case import person_facts
+from flows.case.step_log import Steps
+from flows.case_files import stage_cache
+from flows.case_files.find_cases import Case
+from flows.case_files.stage_cache import Sharing
 from sgcad_core.asking.refine import Call, OnAttempt, Refinement, Write, outcome_of, run_at_once
 from sgcad_core.asking.second_opinion import with_gist_opinion, with_learned_opinion, with_model_opinion
 from sgcad_core.case.records import (
@@ -29,7 +26,9 @@ from sgcad_core.case.records import (
     CrashReport,
     Evidence,
     Execution,
+    Generation,
     Passage,
+    Query,
     RoadNetwork,
     Scenario,
     Stage,
@@ -38,7 +37,7 @@ from sgcad_core.case.records import (
 from sgcad_core.config import Config
 from sgcad_core.errors import ConfigError, MissingTool, SgcadError
 from sgcad_core.execution.compare_executions import Judgement, judge
-from sgcad_core.interfaces import RoadWriter, ScenarioWriter
+from sgcad_core.interfaces import Ask, RoadWriter, ScenarioWriter
 from sgcad_core.metrics import measure
 from sgcad_core.records.edits import Edit
 from sgcad_core.records.second_reader import LEARNED, WHOLE
@@ -48,23 +47,22 @@ from sgcad_core.revision import overruled_validators
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
-class Ending:
-    """What a caller learns of a finished case; the rest is on disk. `reused`: nothing had to be done.
+def ask_of(config: Config) -> Ask:
+    """The function by which writers ask the config's model; each further attempt uses another seed."""
+    backbone, decoder = config.backbone, config.decoder
+    if backbone is None or decoder is None:  # config.build refuses this pairing
+        lack = "backbone" if backbone is None else "decoder"
+        raise ConfigError(f"{config.name}: a model is asked, but there is no {lack}: name one, as mini.yaml does")
 
-    Attempts and calls are those made here and now, without the ones taken from a shelf; steps are all.
-    """
+    def ask(context: Context, query: Query) -> Generation:
+        return backbone.generate(context, query, decoder.at(query.attempt), seed=config.seed + query.attempt - 1)
 
-    result: dict[str, Any]
-    attempts: tuple[Attempt, ...] = ()
-    calls: tuple[Call, ...] = ()
-    reused: bool = False
-    steps: tuple[Step, ...] = ()
+    return ask
 
 
 @dataclass
 class CaseRun:
-    """A case on its way: what is known so far, whatever comes next."""
+    """A case while it runs: everything known so far."""
 
     config: Config
     case: Case
@@ -78,22 +76,22 @@ class CaseRun:
     seconds: dict[str, float] = field(default_factory=dict)
     calls: list[Call] = field(default_factory=list)
     fresh: list[Attempt] = field(default_factory=list)
-    """Attempts made here and now; the others were taken from the shelf, and so were the steps in `shared`."""
+    """Attempts made by this run; the others were taken from the shelf, as were the steps in `shared`."""
     shared: list[str] = field(default_factory=list)
     failure: str = ""
     trace: str = ""
     edits: tuple[Edit, ...] | None = None
     """A person's facts; None: those beside the report."""
-    kept: Mapping[str, person_facts.Kept] = field(default_factory=dict)
-    """By stage, the answer that a model gave to this case before: it is not asked again."""
+    kept: Mapping[str, person_facts.KeptAnswers] = field(default_factory=dict)
+    """By stage, a model's former answer to this case; the model is not asked again."""
     as_read: dict[str, Any] | None = None
-    """The specs before anybody changed a fact, where they are known."""
+    """The specs before the first edit, where they are known."""
     steps: Steps = field(default_factory=Steps)
     result: dict[str, Any] | None = None
-    """The content of result.json, once somebody who looks at it first has put it together."""
+    """The content of result.json, if it was put together before the files are written."""
 
     def go(self) -> None:
-        """Run the stages; how they ended stands in the fields. Raises MissingTool and ConfigError only."""
+        """Run the stages; their results are in the fields. Raises MissingTool and ConfigError only."""
         try:
             self._stages()
         except (MissingTool, ConfigError):
@@ -111,7 +109,7 @@ class CaseRun:
         """Read the report and write both stages; None where one of them was not written."""
         source = self.case.source
         read = self._single("read", lambda: self.config.report_reader.read(source), source.name)
-        self.report = report = person_facts.informed(self._seconded(read), source, self.edits)
+        self.report = report = person_facts.with_person_facts(self._seconded(read), source, self.edits)
         both = self._both(report)
         if both is None and any(fact.basis == "model" for fact in report.reading.facts):
             note = "the second opinion led to no scenario: the rules' reading stands"
@@ -120,7 +118,7 @@ class CaseRun:
         return both
 
     def _both(self, report: CrashReport) -> tuple[Scenario, RoadNetwork] | None:
-        """Both stages of a report as it is read."""
+        """Write the road and the scenario of a report; None if one of them was not written."""
         passages = self._passages(report, "road")
         network = self._stage(self._road(report, passages), report, passages)
         if isinstance(network, RoadNetwork):
@@ -152,7 +150,7 @@ class CaseRun:
             self.metrics["judge"] = self.judgement.summary()
 
     def _stage(self, refinement: Refinement, *content: Any) -> RoadNetwork | Scenario | None:
-        """Refine, as far as the shelf does not know how that ends; the time is that of the attempts themselves."""
+        """Run a stage's refinement, reusing kept turns; its time is that of the attempts themselves."""
         name = refinement.stage
         with self.clock(name, shown=False):
             turns, known = stage_cache.refined(self.sharing, refinement, self.case.id, *content)
@@ -205,7 +203,7 @@ class CaseRun:
     ) -> Refinement:
         return Refinement(
             stage=stage,
-            write=person_facts.laid_over(write, report, net, writer),
+            write=person_facts.with_edits(write, report, net, writer),
             validators=overruled_validators(self.config.validators_of(stage), report.edits),
             evidence_of=lambda generation: Evidence(report=report, network=net, generation=generation),
             ask=(self.kept[stage].ask if stage in self.kept else ask_of(self.config)) if writer.asks_model else None,
@@ -218,7 +216,7 @@ class CaseRun:
 
     @contextmanager
     def clock(self, step: str, shown: bool = True) -> Iterator[list[str]]:
-        """Add the time of what is done within to a step's, which is told unless it is `shown` otherwise."""
+        """Add the time of the block to a step's; the step is logged if `shown`."""
         started = time.perf_counter()
         try:
             with ExitStack() as told:
@@ -227,7 +225,7 @@ class CaseRun:
             self.seconds[step] = self.seconds.get(step, 0.0) + time.perf_counter() - started
 
     def record(self) -> CaseRecord:
-        """Everything known, for result.json and the player."""
+        """Everything known about the case, for result.json and the player."""
         notes = self.report.notes if self.report else ()
         reading = self.report.reading if self.report else None
         about = self.case.id, self.config.name, self.outcomes, self.execution, self.failure, notes, self.seconds
@@ -239,65 +237,17 @@ class CaseRun:
         return tuple(a for outcome in self.outcomes.values() for a in outcome.attempts)
 
     def read_alone(self) -> dict[str, Any] | None:
-        """The specs that the case would have if nobody had said anything; None where nobody did."""
+        """The specs that the case would have without its edits; None where there are no edits."""
         if self.as_read is None and self.report and self.report.edits:
-            alone = CaseRun(self.config, self.case, run_at_once, edits=(), kept=person_facts.kept_in(self.outcomes))
+            unedited = CaseRun(
+                self.config, self.case, run_at_once, edits=(), kept=person_facts.kept_answers(self.outcomes)
+            )
             with suppress(SgcadError):
-                alone.written()
-            return person_facts.specs_of(alone.record())
+                unedited.written()
+            return person_facts.specs_of(unedited.record())
         return self.as_read
 
     def fail(self, fault: Exception) -> None:
-        """Make this a failed case whose reason is a fault that nobody foresaw."""
+        """Make this a failed case whose reason is an unexpected fault."""
         self.failure = f"unexpected {type(fault).__name__}: {fault} (see error.txt)"
         self.trace = "".join(traceback.format_exception(fault))
-
-
-def run_case(
-    config: Config,
-    case: Case,
-    out: Path,
-    digest: str,
-    on_attempt: OnAttempt = run_at_once,
-    *,
-    sharing: Sharing | None = None,
-    tell: OnStep = unheard,
-) -> Ending:
-    """Run one case and leave its folder. Raises MissingTool, ConfigError (a folder that cannot be written)."""
-    run = CaseRun(config, case, on_attempt, sharing, steps=Steps(tell))
-    run.go()
-    result = leave_run(run, case_folder.CaseFolder(out, config.name, case.id), digest)
-    return Ending(result, tuple(run.fresh), tuple(run.calls), steps=tuple(run.steps.done))
-
-
-def leave_failed(config: Config, case: Case, out: Path, digest: str, reason: str) -> Ending:
-    """The folder of a case whose process died, with the reason. The report is not read again: it may be the cause."""
-    run = CaseRun(config, case, run_at_once, failure=reason)
-    return Ending(leave_run(run, case_folder.CaseFolder(out, config.name, case.id), digest))
-
-
-def leave_run(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict[str, Any]:
-    """Write the folder of a case that has gone; its result. Raises ConfigError: it cannot be written."""
-    try:
-        return _write(run, folder, digest)
-    except OSError as fault:
-        raise ConfigError(
-            f"{folder.path}: cannot be written ({fault.strerror}); make room or choose another --out; "
-            "run again to go on where it stopped"
-        ) from fault
-    except Exception as fault:  # noqa: BLE001 - what cannot be drawn or written down costs one case, not the batch
-        bare = CaseRun(run.config, run.case, run_at_once, report=run.report, seconds=run.seconds)
-        bare.fail(fault)
-        return _write(bare, folder, digest)
-
-
-def _write(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict[str, Any]:
-    """Write the folder. A failed case gets no digest that matches: running again tries it again."""
-    with folder.writing() as partial:
-        result = leave(run, partial)
-        mark = digest if result["status"] != "failed" else ""
-        (partial / case_folder.DIGEST).write_text(mark, encoding="utf-8")
-        (partial / person_facts.SOURCE).write_text(
-            str(run.case.source.resolve()), encoding="utf-8", errors="surrogateescape"
-        )
-    return result

@@ -1,6 +1,6 @@
-"""`sgcad explain`: what was read of a report, sentence by sentence, then what follows and what is assumed.
+"""`sgcad explain`: the facts read from a report, sentence by sentence, then the inferred and the assumed facts.
 
-Reads a run's case folder (its result.json and report.txt), or a report, which is read on the spot. Knows no model.
+Reads a case's folder (result.json), or a report. Asks no model.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from sgcad_core.registry import plugin_class
 
 
 def explain(source: Path) -> str:
-    """The whole account as text. Raises BadInput for what is neither a case folder of a run nor a report."""
+    """The whole account as text. Raises BadInput for a path that is neither a case's folder nor a report."""
     if (source / "result.json").is_file():
         return _of_run(source)
     reader = plugin_class("report_reader", "auto")()

@@ -1,9 +1,7 @@
-"""A person's word on a case's way: facts beside its report, laid over what writers write; answers kept from before.
+"""A person's facts in a case: read beside its report, applied to what writers write; model answers that are kept.
 
-    specs.json   in a case's folder: the specs as they stand, and which attempt of each stage they are from
-    .source      where its report lies, so that it can be revised
-
-Knows the chain's records and the case's folder; no Prefect.
+specs.json   in a case's folder: the current specs, and the attempt of each stage that they are from
+.source      path of its report, so that it can be revised
 """
 
 from __future__ import annotations
@@ -45,18 +43,18 @@ SPECS = "specs.json"
 SOURCE = ".source"
 
 
-def informed(report: CrashReport, source: Path, edits: tuple[Edit, ...] | None = None) -> CrashReport:
-    """A report with what people know better of it: `edits`, else the facts.yaml beside it. Raises BadInput."""
+def with_person_facts(report: CrashReport, source: Path, edits: tuple[Edit, ...] | None = None) -> CrashReport:
+    """A report with a person's edits: `edits`, else the facts.yaml beside it. Raises BadInput."""
     if edits is None:
         file = facts_file(source)
         edits = read_edits(file, report_digest(source)) if file.is_file() else ()
     return report.model_copy(update={"edits": edits}) if edits else report
 
 
-def laid_over(
+def with_edits(
     write: Write, report: CrashReport, network: RoadNetwork | None, writer: RoadWriter | ScenarioWriter
 ) -> Write:
-    """A writer's `write` whose artifacts are as people have them; the same one where nobody said anything."""
+    """A writer's `write` with a report's edits applied to its artifacts; the same function without edits."""
     edits = report.edits
     if not edits:
         return write
@@ -74,8 +72,8 @@ def laid_over(
 
 # ------------------------------------------------------------------ what a case's folder keeps of its specs
 def specs_of(record: CaseRecord, as_read: dict[str, Any] | None = None) -> dict[str, Any]:
-    """The specs of a case as they stand (of an exhausted stage those of its best attempt), JSON-able, and the number of
-    the attempt that each is from. `as_read`: the same of the case before anybody said anything, where somebody did."""
+    """The current specs of a case (of an exhausted stage those of its best attempt), JSON-able, and the number of
+    the attempt that each is from. `as_read`: the same of the case before the first edit, where there is one."""
     artifacts = {stage: outcome.artifact for stage, outcome in record.outcomes.items()}
     road, scenario = artifacts.get("road"), artifacts.get("scenario")
     spec = road.spec if isinstance(road, RoadNetwork) else None
@@ -87,8 +85,16 @@ def specs_of(record: CaseRecord, as_read: dict[str, Any] | None = None) -> dict[
     } | ({"as_read": as_read} if as_read else {})
 
 
+def report_path(folder: Path) -> Path:
+    """The path of a case's report, from its folder. Raises BadInput."""
+    try:
+        return Path((folder / SOURCE).read_text(encoding="utf-8", errors="surrogateescape"))
+    except OSError as fault:
+        raise BadInput(f"{folder}: does not say where its report is: name it with --report") from fault
+
+
 def disagreement(specs: Mapping[str, Any], edits: Sequence[Edit]) -> dict[str, Any]:
-    """How many facts of a case are a person's, and of how many of them the reading and the writers had other values."""
+    """The number of facts that are a person's, and of those that the reading and the writers had differently."""
     given, was = effective(edits), specs.get("as_read") or {}
     road, behavior = _validated(was.get("road"), was.get("behavior"))
     said = [(e.field, value_of(e.field, road, behavior), e.value) for e in given]
@@ -121,7 +127,7 @@ class Specs:
     behavior: BehaviorSpec | None = None
     kept: Mapping[str, int] = field(default_factory=dict)
     as_read: dict[str, Any] | None = None
-    """The content of a specs.json before anybody changed a fact, where somebody did."""
+    """The content of specs.json before the first edit, where there is one."""
 
 
 def read_specs(folder: Path) -> Specs:
@@ -137,19 +143,19 @@ def read_specs(folder: Path) -> Specs:
 
 # ------------------------------------------------------------------ what a model answered before
 @dataclass(frozen=True)
-class Kept:
-    """The attempts of a stage as a case's folder keeps them, and which of them stands."""
+class KeptAnswers:
+    """The attempts of a stage as a case's folder keeps them; `number` is the valid one."""
 
     attempts: tuple[Attempt, ...]
     number: int
 
     def ask(self, context: Context, query: Query) -> Generation:
-        """The answer that stands, whatever is asked."""
+        """The kept answer, independent of the query."""
         answer = self.attempts[self.number - 1].generation
         return answer or Generation(text=self.attempts[self.number - 1].answer)
 
     def among_others(self, outcome: StageOutcome) -> StageOutcome:
-        """The outcome of judging that answer anew, with the other attempts around it."""
+        """The outcome of validating that answer again, with the other attempts around it."""
         judged = outcome.attempts[-1]
         before = self.attempts[self.number - 1]
         fresh = judged.model_copy(update={"number": self.number, "prompt": before.prompt, "held": before.held})
@@ -157,13 +163,13 @@ class Kept:
         return outcome.model_copy(update={"attempts": attempts, "kept": self.number if outcome.kept else 0})
 
 
-def kept_in(outcomes: Mapping[str, StageOutcome]) -> dict[str, Kept]:
+def kept_answers(outcomes: Mapping[str, StageOutcome]) -> dict[str, KeptAnswers]:
     """The attempts of stages that have just been written."""
-    return {stage: Kept(o.attempts, o.kept or len(o.attempts)) for stage, o in outcomes.items() if o.attempts}
+    return {stage: KeptAnswers(o.attempts, o.kept or len(o.attempts)) for stage, o in outcomes.items() if o.attempts}
 
 
-def kept_of(folder: Path, stage: str, number: int) -> Kept:
-    """A stage's attempts as a case's folder keeps them; `number`: the one that stands, 0: the last.
+def read_kept_answers(folder: Path, stage: str, number: int) -> KeptAnswers:
+    """A stage's attempts as a case's folder keeps them; `number`: the valid one, 0: the last.
 
     Raises BadInput where the folder keeps no answer.
     """
@@ -171,7 +177,7 @@ def kept_of(folder: Path, stage: str, number: int) -> Kept:
     attempts = tuple(_attempt(place) for place in places)
     if not attempts:
         raise BadInput(f"{folder}/attempts: no answer of the {stage} stage is kept: run the case again")
-    return Kept(attempts, number or len(attempts))
+    return KeptAnswers(attempts, number or len(attempts))
 
 
 def _attempt(place: Path) -> Attempt:
@@ -190,7 +196,7 @@ def _attempt(place: Path) -> Attempt:
 
 
 def _generation(answer: str, about: Any) -> Generation | None:
-    """What is known of the answer's making."""
+    """The generation of an answer, as far as the folder keeps it."""
     if not isinstance(about, dict):
         return None
     names: Sequence[str] = ("finish", "prompt_tokens", "model_calls", "seconds", "grounding", "notes")

@@ -1,18 +1,17 @@
-"""A person's facts on one finished case: laid over it, planned, simulated, checked and written anew in a second or so.
+"""A person's facts on one finished case: applied, then planned, simulated, checked and written again in about a second.
 
     revise(folder, {"roads.N.lanes_forward": 2}, who="ann", why="the drawing shows two")
     undo(folder)
 
-Nothing that was finished is asked of a model again: its answers are those that the case's folder keeps. A wrong edit
-raises WrongEdit and leaves facts.yaml and the case's folder as they were. Edits of one report wait in line, whoever
-makes them in whatever process. Knows the chain; no Prefect, no page.
+A model is not asked again: its answers are those that the case's folder keeps. A wrong edit
+raises WrongEdit and leaves facts.yaml and the case's folder as they were. Edits of one report wait for each other, also
+across processes. Knows no Prefect and no page.
 """
 
 from __future__ import annotations
 
 import getpass
 import hashlib
-import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -23,11 +22,12 @@ from typing import Any
 
 import yaml
 
-from flows.batch import config_folder, find_cases
-from flows.batch.find_cases import Case
 from flows.case import person_facts
-from flows.case.case_folder import CaseFolder
-from flows.case.chain import CaseRun, leave_run
+from flows.case.chain import CaseRun
+from flows.case.run_case import write_run
+from flows.case_files import find_cases
+from flows.case_files.case_folder import CONFIG, CaseFolder, read_json
+from flows.case_files.find_cases import Case
 from sgcad_core.asking.refine import run_at_once
 from sgcad_core.case.records import Finding
 from sgcad_core.config import Config, build
@@ -47,30 +47,30 @@ from sgcad_core.revision.file import facts_lock, with_new_edits, without_last_ed
 from sgcad_core.revision.standing_edits import SOURCE
 from sgcad_core.system.report_files import facts_file
 
-Given = Mapping[str, object]
+FieldValues = Mapping[str, object]
 """Field -> value, typed or as text; `AS_READ` takes a field's edits back."""
 
 
 @dataclass(frozen=True)
 class Revised:
-    """What a revision came to; the rest is in the case's folder."""
+    """Result of a revision; the rest is in the case's folder."""
 
     result: dict[str, Any]
     """The content of result.json."""
     findings: Mapping[str, tuple[Finding, ...]]
-    """By field, under "" those that concern none; the planner's notes among them."""
+    """By field, under "" those of no field; the planner's notes are among them."""
     edits: tuple[Edit, ...]
     """The effective edits of the case's report."""
     seconds: float
     stamp: str
     """Fingerprint of the facts as they stand now, for `seen`."""
     changed: bool = True
-    """False where the edits said what stood already: nothing was done."""
+    """False where the edits change no value: nothing was done."""
 
 
 @dataclass(frozen=True)
 class Opened:
-    """A finished case, its report and its config."""
+    """A finished case with its report and its config."""
 
     folder: Path
     source: Path
@@ -85,7 +85,7 @@ class Opened:
 
     @property
     def file(self) -> Path:
-        """Where its facts are kept."""
+        """Path of the report's facts.yaml."""
         return facts_file(self.source)
 
     def edits(self) -> tuple[Edit, ...]:
@@ -103,17 +103,10 @@ def opened(folder: Path, report: Path | None = None) -> Opened:
     former = CaseFolder(folder.parent.parent, folder.parent.name, folder.name).result()
     if former is None:
         raise BadInput(f"{folder}: no result.json in it: give the folder of a finished case, such as runs/template/x")
-    source = report or _source(folder)
+    source = report or person_facts.report_path(folder)
     if not source.exists():
         raise BadInput(f"{source}: the report of {folder.name} is gone: put it back, or name it with --report")
-    return Opened(folder, source, _config(folder.parent / config_folder.FILE), former, person_facts.read_specs(folder))
-
-
-def _source(folder: Path) -> Path:
-    try:
-        return Path((folder / person_facts.SOURCE).read_text(encoding="utf-8", errors="surrogateescape"))
-    except OSError as fault:
-        raise BadInput(f"{folder}: does not say where its report is: name it with --report") from fault
+    return Opened(folder, source, _config(folder.parent / CONFIG), former, person_facts.read_specs(folder))
 
 
 def _config(file: Path) -> Config:
@@ -136,21 +129,27 @@ def _built(file: Path, changed_ns: int) -> Config:
 
 
 def editable(folder: Path) -> tuple[CaseField, ...]:
-    """What can be changed of a finished case, with what it is now. Raises BadInput."""
+    """The fields of a finished case that can be changed, with their values. Raises BadInput."""
     specs = person_facts.read_specs(folder)
     return fields_of(specs.road, specs.behavior)
 
 
 def stamp_of(edits: Sequence[Edit]) -> str:
-    """Fingerprint of edits: two pages that show the same stamp show the same facts."""
+    """Fingerprint of edits: pages with the same stamp show the same facts."""
     return hashlib.sha256("\n".join(edit.model_dump_json() for edit in edits).encode()).hexdigest()[:16]
 
 
 # ------------------------------------------------------------------ changing
 def revise(
-    folder: Path, edits: Given, *, who: str = "", why: str = "", seen: str | None = None, report: Path | None = None
+    folder: Path,
+    edits: FieldValues,
+    *,
+    who: str = "",
+    why: str = "",
+    seen: str | None = None,
+    report: Path | None = None,
 ) -> Revised:
-    """Lay a person's facts over a finished case and write its result files anew.
+    """Apply a person's facts to a finished case and write its result files again.
 
     `who`: the user's name unless given. `seen`: the `stamp` of the facts that the person saw; others are refused.
     Raises WrongEdit (nothing was changed), BadInput, ConfigError.
@@ -167,18 +166,18 @@ def revise(
 
 
 def undo(folder: Path, *, seen: str | None = None, report: Path | None = None) -> Revised:
-    """Take the last revision of a case's report back, whoever made it. Raises WrongEdit where there is none."""
+    """Undo the last revision of a case's report, by any author. Raises WrongEdit where there is none."""
     started = time.perf_counter()
     case = opened(folder, report)
     with facts_lock(case.source):
         before = _unchanged(case.edits(), seen)
         if not before:
-            raise WrongEdit(f"{case.folder.name}: there is nothing to undo: nobody has changed a fact of it")
+            raise WrongEdit(f"{case.folder.name}: there is nothing to undo: none of its facts was changed")
         return _written(case, before, without_last_edits(before), set(), started)
 
 
-def note(source: Path, edits: Given, *, who: str = "", why: str = "") -> tuple[Edit, ...]:
-    """Keep facts beside a report without running anything: the next run goes by them. Raises WrongEdit, BadInput."""
+def note(source: Path, edits: FieldValues, *, who: str = "", why: str = "") -> tuple[Edit, ...]:
+    """Keep facts beside a report without running anything; the next run uses them. Raises WrongEdit, BadInput."""
     new = _edits(edits, who, why)
     with facts_lock(source):
         digest = report_digest(source)
@@ -187,7 +186,7 @@ def note(source: Path, edits: Given, *, who: str = "", why: str = "") -> tuple[E
     return effective(after)
 
 
-def _edits(given: Given, who: str, why: str) -> tuple[Edit, ...]:
+def _edits(given: FieldValues, who: str, why: str) -> tuple[Edit, ...]:
     """Typed edits of one moment. Raises WrongEdit with every fault found."""
     faults: list[str] = []
     found: list[Edit] = []
@@ -214,13 +213,13 @@ def _unchanged(edits: tuple[Edit, ...], seen: str | None) -> tuple[Edit, ...]:
     """The edits, if they are those that were seen."""
     if seen is None or seen == stamp_of(edits):
         return edits
-    last = f"{edits[-1].who or 'somebody'} changed {edits[-1].field}" if edits else "the last edit was undone"
-    raise WrongEdit(f"the facts of this case have changed meanwhile ({last}): look at it again, then change it")
+    last = f"{edits[-1].who or 'a person'} changed {edits[-1].field}" if edits else "the last edit was undone"
+    raise WrongEdit(f"the facts of this case have changed meanwhile ({last}): load it again, then repeat the change")
 
 
 # ------------------------------------------------------------------ running
 def _written(case: Opened, before: tuple[Edit, ...], after: tuple[Edit, ...], new: set[str], started: float) -> Revised:
-    """Run the case with other edits; keep both, or neither."""
+    """Run the case with other edits; keep edits and results, or neither."""
     as_read = _as_read(case, before) if after else None
     run = CaseRun(case.config, case.case, run_at_once, edits=after, kept=_kept(case), as_read=as_read)
     run.go()
@@ -230,7 +229,7 @@ def _written(case: Opened, before: tuple[Edit, ...], after: tuple[Edit, ...], ne
     write_edits(case.file, after, report_digest(case.source))
     try:
         digest = find_cases.digest_of(case.case, case.config)
-        result = leave_run(run, CaseFolder(case.folder.parent.parent, case.config.name, case.folder.name), digest)
+        result = write_run(run, CaseFolder(case.folder.parent.parent, case.config.name, case.folder.name), digest)
     except BaseException:
         write_edits(case.file, before, report_digest(case.source))
         raise
@@ -240,22 +239,21 @@ def _written(case: Opened, before: tuple[Edit, ...], after: tuple[Edit, ...], ne
 
 
 def _as_read(case: Opened, before: tuple[Edit, ...]) -> dict[str, Any] | None:
-    """The specs before anybody changed a fact; None: not known here, so the chain finds them out."""
+    """The specs before the first edit; None: not known here, so the chain finds them."""
     if before:
         return case.specs.as_read
-    raw: dict[str, Any] = json.loads((case.folder / person_facts.SPECS).read_text(encoding="utf-8"))
-    return raw
+    return read_json(case.folder / person_facts.SPECS)
 
 
-def _kept(case: Opened) -> dict[str, person_facts.Kept]:
+def _kept(case: Opened) -> dict[str, person_facts.KeptAnswers]:
     """The answers that a model gave, by stage. Raises BadInput where a stage has none yet."""
     asks = {"road": case.config.road_writer.asks_model, "scenario": case.config.scenario_writer.asks_model}
     asked = [stage for stage in STAGES if asks[stage]]
-    return {stage: person_facts.kept_of(case.folder, stage, case.specs.kept.get(stage, 0)) for stage in asked}
+    return {stage: person_facts.read_kept_answers(case.folder, stage, case.specs.kept.get(stage, 0)) for stage in asked}
 
 
 def _findings(run: CaseRun) -> list[Finding]:
-    """What validators say of the attempts that stand, and the planner's notes."""
+    """Findings of the valid attempts, and the planner's notes."""
     told = [attempt for outcome in run.outcomes.values() if (attempt := outcome.told_by)]
     found = [finding for attempt in told for finding in attempt.findings]
     scenario = run.record().scenario
@@ -271,7 +269,7 @@ def _place(note: str) -> str:
 def _check(
     case: Opened, result: Mapping[str, Any], findings: Sequence[Finding], new: Sequence[Edit], undoing: bool
 ) -> None:
-    """Raise WrongEdit where an edit does not stand, or where the case is worse for it."""
+    """Raise WrongEdit where an edit has no effect, or makes the case's result worse."""
     asked = {edit.field for edit in new if edit.value != AS_READ}
     void = [f for f in findings if f.source == SOURCE and f.where in asked]
     if void:
@@ -288,7 +286,7 @@ def _check(
 
 
 def _standing(result: Mapping[str, Any]) -> int:
-    """How far a case has come: as declared, generated, exhausted, no scenario at all; without a crash none declares."""
+    """Rank of a result: as declared 3, generated 2, exhausted 1, no scenario 0."""
     if result["status"] == "generated":
         return 3 if as_declared(result) else 2
     return {"exhausted": 1}.get(str(result["status"]), 0)
@@ -297,7 +295,11 @@ def _standing(result: Mapping[str, Any]) -> int:
 def _state(result: Mapping[str, Any]) -> str:
     if result["status"] != "generated":
         return f"{result['status']} ({result['reason']})"
-    declared = {True: "as declared", False: "but not as declared", None: "but nobody touches or nearly touches anybody"}
+    declared = {
+        True: "as declared",
+        False: "but not as declared",
+        None: "but there is neither a contact nor a near crash",
+    }
     return f"generated {declared[as_declared(result)]}"
 
 

@@ -1,6 +1,6 @@
-"""`sgcad revise`: facts that a person knows better, laid over one finished case. Answers go to stdout.
+"""`sgcad revise`: a person's facts applied to one finished case. Answers go to stdout.
 
-Everything heavy is imported inside, so that --help is quick.
+Heavy modules are imported inside, so that --help is quick.
 """
 
 from __future__ import annotations
@@ -15,29 +15,32 @@ if TYPE_CHECKING:
     from sgcad_core.revision import CaseField
 
 Case = Annotated[Path, typer.Argument(help="A finished case's folder, such as runs/template/x; with --later a report.")]
-Sets = Annotated[list[str] | None, typer.Option("--set", help="FIELD=VALUE, such as roads.N.lanes_forward=2.")]
-Why = Annotated[str, typer.Option("--why", help="The reason, kept beside the fact.")]
-Who = Annotated[str, typer.Option("--who", help="Who says so; default: the user's name.")]
-Undo = Annotated[bool, typer.Option("--undo", help="Take the last revision back.")]
-Listed = Annotated[bool, typer.Option("--list", help="Name every field with what it is and may be.")]
-Report = Annotated[Path | None, typer.Option("--report", help="Where the report is now, if it was moved.")]
-Later = Annotated[bool, typer.Option("--later", help="Keep the facts beside a report; the next run goes by them.")]
+Sets = Annotated[
+    list[str] | None,
+    typer.Option("--set", help="FIELD=VALUE, such as roads.N.lanes_forward=2; may be given several times."),
+]
+Why = Annotated[str, typer.Option("--why", help="The reason, kept with the fact.")]
+Who = Annotated[str, typer.Option("--who", help="Author of the edits; default: the user's name.")]
+Undo = Annotated[bool, typer.Option("--undo", help="Undo the last revision.")]
+Listed = Annotated[bool, typer.Option("--list", help="List every field with its value and its allowed values.")]
+Report = Annotated[Path | None, typer.Option("--report", help="Path of the report, if it was moved.")]
+Later = Annotated[bool, typer.Option("--later", help="Only keep the facts beside a report; the next run uses them.")]
 
 
 def revise(
     case: Case, sets: Sets = None, why: Why = "", who: Who = "", undo: Undo = False, listed: Listed = False,
     report: Report = None, later: Later = False,
 ) -> None:  # fmt: skip
-    """Change facts of a finished case by hand: it is planned, simulated, checked and written anew.
+    """Change facts of a finished case by hand; the case is planned, simulated, checked and written again.
 
-    The facts are kept in facts.yaml beside the report and win over every reader, on any later run and config. A wrong
-    one is refused with its reason and changes nothing. FIELD=as_read goes back to what was read.
+    The facts are kept in facts.yaml beside the report and override every reader in later runs of any config. A wrong
+    fact is refused with its reason and changes nothing. FIELD=as_read restores the value that was read.
     """
     from flows.case import revise_case
     from sgcad_core.errors import ConfigError
 
     if sum((bool(sets), undo, listed)) != 1:
-        raise ConfigError("give --set FIELD=VALUE (several are laid together), --undo or --list, one of the three")
+        raise ConfigError("give one of --set FIELD=VALUE (several are allowed), --undo or --list")
     if listed:
         typer.echo("\n".join(_fields(case)))
     elif later:
@@ -62,14 +65,14 @@ def _given(sets: list[str] | tuple[str, ...]) -> dict[str, object]:
 
 
 def _told(revised: Revised) -> list[str]:
-    """What came of it, for people."""
+    """The result of a revision in lines for people."""
     from flows.terminal import escape_plain
     from sgcad_core.result import as_declared
 
     result = revised.result
     as_told = {True: ", as declared", False: ", not as declared", None: ""}[as_declared(result)]
     end = f"{result['case']}: {result['status']}{as_told}" + (f" ({result['reason']})" if result["reason"] else "")
-    lines = [end if revised.changed else f"{end}; nothing was changed: it stood so already"]
+    lines = [end if revised.changed else f"{end}; nothing was changed: the facts had these values already"]
     lines += [f"  {edit.line()}" for edit in revised.edits] or ["  no fact is a person's"]
     findings = {finding.line(): None for said in revised.findings.values() for finding in said}
     lines += [f"  {line}" for line in findings]
@@ -77,7 +80,7 @@ def _told(revised: Revised) -> list[str]:
 
 
 def _fields(case: Path) -> list[str]:
-    """A line a field: name, value, what it may be, what it is."""
+    """One line per field: name, value, allowed values, meaning."""
     from flows.case.revise_case import editable
 
     return [f"{f.name} = {_value(f.value)}  [{_range(f)}]  {f.kind.about}" for f in editable(case)]

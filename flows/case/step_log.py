@@ -1,7 +1,7 @@
-"""What a case does, step by step: when each began and ended, how, and what it waited for.
+"""The log of a case's steps: begin, end, state, and the steps before each.
 
-Told as it happens (`Steps.tell`) and kept (`Steps.done`), so that a worker process can hand it over at its end. Knows
-attempts; no Prefect, which flows/batch/prefect_tasks.py shows it in.
+Steps are reported as they happen (`Steps.tell`) and kept (`Steps.done`), so that a worker process can return them.
+flows/batch/prefect_tasks.py shows them in Prefect.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ WAITS_FOR: Mapping[str, tuple[str, ...]] = {
     "draw": ("measure", "judge", "drive"),
     "track": ("draw",),
 }
-"""What a step needs of those before it: of a stage its last attempt, of "opinion" and "read" the first there is."""
+"""Steps that a step needs: of a stage its last attempt, of "opinion" and "read" the first one found."""
 _FIRST_OF = ("opinion", "read")
 
 
@@ -48,25 +48,25 @@ class Step:
 
 
 OnStep = Callable[[Step], None]
-"""Told that a step begins (`ended` is None) and that it has ended; from the case's own thread."""
+"""Called when a step begins (`ended` is None) and when it has ended, from the case's own thread."""
 
 
-def unheard(step: Step) -> None:
-    """Nobody listens."""
+def ignore_step(step: Step) -> None:
+    """Ignore the step."""
 
 
 @dataclass
 class Steps:
     """The steps of one case."""
 
-    tell: OnStep = unheard
+    tell: OnStep = ignore_step
     done: list[Step] = field(default_factory=list)
 
     @contextmanager
     def during(self, name: str) -> Iterator[list[str]]:
-        """A step that lasts as long as the block; what the block puts into the list is its state's name.
+        """Log a step that lasts as long as the block; the block may append its state's name to the list.
 
-        A step of the same name before it is gone on with.
+        An earlier step of the same name is continued.
         """
         state: list[str] = []
         begun = self._begin(name)
@@ -78,7 +78,7 @@ class Steps:
         self._end(replace(begun, state=state[-1] if state else begun.state))
 
     def attempt(self, name: str, work: Callable[[], Turn]) -> Turn:
-        """An attempt, which ends by its verdict."""
+        """Log an attempt, whose state is its verdict."""
         begun = self._begin(name)
         try:
             turn = work()
@@ -89,7 +89,7 @@ class Steps:
         return turn
 
     def taken(self, name: str) -> None:
-        """A step that somebody else took: its result came from the shelf."""
+        """Log a step whose result was taken from the shelf."""
         begun = self._begin(name)
         self._end(replace(begun, state="Cached", message="made for another config before"))
 
@@ -108,7 +108,7 @@ class Steps:
 
 
 def waits_for(name: str, seen: Sequence[str]) -> tuple[str, ...]:
-    """The steps before one, of those that there are; the last of them where it needs none by name."""
+    """The steps that one waits for among those seen; the last one where it names none."""
     stage, _, number = name.partition("[")
     if number[:-1].isdigit() and int(number[:-1]) > 1:
         return (f"{stage}[{int(number[:-1]) - 1}]",)
@@ -131,7 +131,7 @@ def _attempt_of(name: str) -> str:
 
 
 def judged(step: Step, attempt: Attempt) -> Step:
-    """Completed unless it refused: to be sent back is an attempt's ordinary end."""
+    """A step with the state of its attempt: completed unless it refused."""
     found = [f for f in attempt.findings if f.severity != "note"]
     message = "; ".join(f.line() for f in found)[:500]
     if any(f.severity == "refuse" for f in found):

@@ -1,4 +1,4 @@
-"""What a worker's environment says for every deployed run on it, so that prefect.yaml names no host and no secret."""
+"""Defaults of deployed runs from the worker's environment, so that prefect.yaml names no host and no secret."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The `nightly` deployment: a benchmark over a folder of cases, held against the last run that a person accepted.
+"""The `nightly` deployment: a benchmark over a folder of cases, compared with the last accepted run.
 
-    python -m flows.deploy.nightly accept --out runs/nightly      # what was measured last is the measure now
+    python -m flows.deploy.nightly accept --out runs/nightly      # the last run becomes the reference
 
 Each run writes latest.json; accepting copies it to accepted.json. A drop beyond tolerance fails the flow run, whose
 message names each figure, the accepted value and the new one. Import after `settings.quiet_libraries()`.
@@ -23,17 +23,15 @@ from prefect import flow
 from prefect.client.schemas.objects import State
 from prefect.states import Completed, Failed
 
-from flows.batch import find_cases as case_sets
-from flows.batch.evaluate_flow import drive
-from flows.batch.plan_batch import MAX_JOBS, Batch, Crew, Job, batch_of
+from flows.batch.batch_flow import run_inside_flow
+from flows.batch.machine import git_commit
+from flows.batch.plan_batch import MAX_JOBS, Batch, batch_of
 from flows.batch.prefect_case_task import threads
-from flows.case import case_folder
-from flows.case.chain import Ending
+from flows.case_files import case_folder
+from flows.case_files import find_cases as case_sets
 from flows.deploy.defaults import cases_folder, overrides_of
 from flows.results.measures import GENERATION, NETWORK_MEAN, NETWORK_WRONG, TRUTH, Measure, values_of
 from flows.results.reading import Study, load_study
-from flows.study.machine import git_commit
-from flows.study.plan import dataset_digest
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 
@@ -46,7 +44,7 @@ Figures = Mapping[str, Mapping[str, float]]
 
 
 class Tolerance(NamedTuple):
-    """How much worse is no drop: shares and errors by so much (0.02 = two of a hundred cases), others by a factor."""
+    """Allowed worsening: of shares and errors the difference (0.02 = two of a hundred cases), of others a factor."""
 
     share: float = 0.02
     count_factor: float = 1.1
@@ -69,14 +67,14 @@ def nightly_flow(
     """Run the benchmark; Failed if a figure is worse than the accepted one by more than the tolerance.
 
     `cases` is a folder, by default SGCAD_CASES or the bundled reports; `truth` a folder of labels, without which only
-    what needs none is measured. Cases that nothing has changed for are not repeated unless `fresh`. `accept` makes this
-    run the measure.
+    figures without truth are measured. Unchanged cases are not repeated unless `fresh`. `accept` makes this run the
+    reference.
     """
     paths = settings.configs_or_default(configs)
     batch = batch_of(case_sets.cases_in([cases_folder(cases)]), paths, Path(out), overrides_of(overrides), jobs, fresh)
     if truth and not Path(truth).is_dir():
         raise ConfigError(f"truth {truth}: no such folder; give the one that holds <case>.json, or none")
-    _work(batch)
+    run_inside_flow(batch, lambda _job, _ending, _untracked: None)  # endings are read from disk afterwards
     latest = _about(batch, figures_of(batch, Path(truth) if truth else None))
     case_folder.write_json(batch.out / LATEST, latest)
     if accept:
@@ -84,20 +82,11 @@ def nightly_flow(
     return _judged(batch.out, latest, Tolerance(tolerance, seconds_factor=seconds_factor))
 
 
-def _work(batch: Batch) -> None:
-    plan, crew = batch.plan(), Crew(batch)
-    crew.begin(plan)
-    drive(plan, crew, _nothing)
-    crew.close()
-
-
-def _nothing(job: Job, ending: Ending, untracked: str) -> None:
-    """Endings are read from disk afterwards."""
-
-
 def _judged(out: Path, latest: dict[str, Any], tolerance: Tolerance) -> State[Any]:
     if (accepted := _read(out / ACCEPTED)) is None:
-        return Completed(message=f"measured; nothing is accepted yet: `{_accept_command(out)}` makes this the measure")
+        return Completed(
+            message=f"measured; no run is accepted yet: `{_accept_command(out)}` makes this run the reference"
+        )
     if accepted["dataset_digest"] != latest["dataset_digest"]:
         return Failed(
             message=f"accepted was measured on other cases; look at {out / LATEST}, then `{_accept_command(out)}`"
@@ -110,7 +99,7 @@ def _judged(out: Path, latest: dict[str, Any], tolerance: Tolerance) -> State[An
 
 # ------------------------------------------------------------------ figures
 def figures_of(batch: Batch, truth: Path | None) -> dict[str, dict[str, float]]:
-    """Figures of a finished batch by config, from its folders; with truth the errors against it too."""
+    """Figures of a finished batch by config, from its folders; with truth also the errors against it."""
     names, ids = {c.name for c in batch.configs}, tuple(c.id for c in batch.cases)
     found = load_study(batch.out, truth)
     study = replace(found, arms=tuple(a for a in found.arms if a.name in names), cases=ids)
@@ -127,7 +116,7 @@ def _figures(study: Study, arm: str) -> dict[str, float]:
 
 
 def _value(measure: Measure, values: Sequence[Mapping[str, float]]) -> float | None:
-    """Over cases that have it: the mean, or of a ratio the quotient of the sums; None if none has."""
+    """Value over the cases that have it: the mean, or of a ratio the quotient of the sums; None if no case has it."""
     if measure.kind == "ratio":
         above, below = (sum(v.get(key, 0.0) for v in values) for key in measure.keys)
         return above / below if below else None
@@ -136,14 +125,14 @@ def _value(measure: Measure, values: Sequence[Mapping[str, float]]) -> float | N
 
 
 def drops(accepted: Figures, latest: Figures, tolerance: Tolerance) -> Iterator[str]:
-    """What is worse than accepted by more than the tolerance, each in words; a figure that is gone is a drop."""
+    """Figures that are worse than the accepted ones by more than the tolerance, in words; a missing figure counts."""
     for config, figures in accepted.items():
         for measure in COMPARED:
             old, new = figures.get(measure.name), latest.get(config, {}).get(measure.name)
             if old is None or not measure.better:
                 continue
             if new is None:
-                yield f"{config}: {measure.name} was {old:.4g} and is not measured any more"
+                yield f"{config}: {measure.name} was {old:.4g} and is no longer measured"
             elif _is_worse(measure, old, new, tolerance):
                 yield f"{config}: {measure.name} was {old:.4g}, is {new:.4g} ({measure.better} is good)"
 
@@ -158,9 +147,9 @@ def _is_worse(measure: Measure, old: float, new: float, tolerance: Tolerance) ->
 
 # ------------------------------------------------------------------ what is accepted
 def accept_latest(out: Path) -> Path:
-    """Make the last run the measure; the file that says so. Raises ConfigError where nothing was measured."""
+    """Make the last run the reference; its file. Raises ConfigError where nothing was measured."""
     if _read(out / LATEST) is None:
-        raise ConfigError(f"{out / LATEST}: nothing was measured here yet; run the deployment `nightly` first")
+        raise ConfigError(f"{out / LATEST}: no run was measured here yet; run the deployment `nightly` first")
     partial = out / f".{ACCEPTED}.partial"
     shutil.copyfile(out / LATEST, partial)
     return partial.replace(out / ACCEPTED)
@@ -175,7 +164,7 @@ def _about(batch: Batch, figures: Figures) -> dict[str, Any]:
         "measured": datetime.now(UTC).isoformat(timespec="seconds"),
         "package": version("sg-cadvlm"),
         "git_commit": git_commit(),
-        "dataset_digest": dataset_digest(batch.cases),
+        "dataset_digest": case_sets.dataset_digest(batch.cases),
         "cases": len(batch.cases),
         "figures": figures,
     }
@@ -187,13 +176,13 @@ def _read(file: Path) -> dict[str, Any] | None:
     except FileNotFoundError:
         return None
     except ValueError as fault:
-        raise ConfigError(f"{file}: cannot be read ({fault}); remove it and accept anew") from fault
+        raise ConfigError(f"{file}: cannot be read ({fault}); remove it and accept a run again") from fault
     return about
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Accept what was measured last."""
-    parser = argparse.ArgumentParser(description="Accepts what the nightly benchmark measured last.")
+    """Accept the last run as the reference."""
+    parser = argparse.ArgumentParser(description="Accepts the last run of the nightly benchmark as the reference.")
     parser.add_argument("what", choices=("accept",))
     parser.add_argument("--out", type=Path, default=Path("runs/nightly"))
     sys.stdout.write(f"{accept_latest(parser.parse_args(arguments).out)}\n")

@@ -1,6 +1,6 @@
-"""The `reindex` deployment: the knowledge base built anew beside the old one, which is then replaced in one step.
+"""The `reindex` deployment: builds the knowledge base again beside the old one, then replaces that in one step.
 
-Runs that read the old index meanwhile keep what they have opened. Import after `settings.quiet_libraries()`.
+Runs that have opened the old index keep it. Import after `settings.quiet_libraries()`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def reindex_flow(
     base_url: str = "",
     builtin: bool = True,
 ) -> State[Any]:
-    """Build the index of the `lancedb` retriever, as `sgcad index build` does; its version stands in the message."""
+    """Build the index of the `lancedb` retriever, as `sgcad index build` does; the message names its version."""
     retriever = retriever_of(Path(folder), embedder=embedder, model=model, base_url=base_url)
     skipped: list[str] = []
     chunks = retriever.chunks(

@@ -1,7 +1,7 @@
 """Shards of a study as flow runs of one deployment, taken by the workers of a pool on any number of hosts.
 
-`shard_flow` is what the deployment serves (deploy/prefect.yaml); `on_hosts` lays a study out, submits it and
-brings it home into the folder that a single machine would have filled. Import after `settings.quiet_libraries()`.
+`shard_flow` is the deployment's flow (deploy/prefect.yaml); `on_hosts` lays a study out, submits its shards and
+collects the results in the folder that a single machine would fill. Import after `settings.quiet_libraries()`.
 """
 
 from __future__ import annotations
@@ -27,22 +27,22 @@ from prefect.runtime import flow_run
 from prefect.states import Completed, Crashed
 
 from flows.batch import track_cases
-from flows.batch.evaluate_flow import drive
+from flows.batch.batch_flow import submit_and_follow
 from flows.batch.plan_batch import Job
 from flows.batch.prefect_case_task import threads
 from flows.batch.track_cases import OnEnding
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
+from flows.deploy.hosts_preflight import DEPLOYMENT, Hosts
 from flows.study.plan import Plan
 from flows.study.shard_lease import BEAT_S
-from flows.study.shards import Shard, lay_out, work_of, work_on
-from flows.study.shared_storage import Mark, Share, Unreachable
-from flows.study.watch_shards import PATIENCE_S, START_S, Watch, follow
+from flows.study.shards import Shard, lay_out, run_shard, shard_job
+from flows.study.shared_storage import Mark, SharedFolder, Unreachable
+from flows.study.watch_shards import ShardWatch, watch_until_done
 from flows.study.watch_shards import State as Standing
 from sgcad_core.errors import ConfigError
 
-DEPLOYMENT = "shard/shard"
 THREADS = 64
-"""Of a shard's flow run: as many cases can be on their way at a time; `jobs` says how many are."""
+"""Threads of a shard's flow run, the limit of `jobs`."""
 POLL_S = 2.0
 PAGE = 200
 """The server's limit of flow runs an answer."""
@@ -65,15 +65,16 @@ def shard_flow(
     scratch: str = "",
     beat_s: float = BEAT_S,
 ) -> State[Any]:
-    """Do one shard of a study laid out at `address` (`laying` names the plan).
+    """Run one shard of a study laid out at `address` (`laying` names the plan).
 
-    `jobs` cases at a time share one model and its batch.
-
-    `scratch` is a folder on this host; what it holds from a run that was cut off is handed in, not done again.
+    `jobs` cases at a time share one model and its batch. `scratch` is a folder on this host; results in it of an
+    interrupted run are handed in, not repeated.
     """
     place = Path(scratch or tempfile.gettempdir()) / "sgcad-shards" / hashlib.sha256(address.encode()).hexdigest()[:12]
     place.mkdir(parents=True, exist_ok=True)
-    tally = work_on(Shard(Share(address), shard, str(flow_run.id), place, laying), drive, jobs, beat_s)
+    tally = run_shard(
+        Shard(SharedFolder(address), shard, str(flow_run.id), place, laying), submit_and_follow, jobs, beat_s
+    )
     return Completed(message=", ".join(f"{count} {name}" for name, count in vars(tally).items()))
 
 
@@ -111,7 +112,7 @@ class PrefectPool:
         return found
 
     def give_up(self, run: str, reason: str) -> None:
-        """Mark a run as crashed: its place in the pool is free again, and its message says why."""
+        """Mark a run as crashed with a reason, which frees its place in the pool."""
         _answer(lambda client: client.set_flow_run_state(run, Crashed(message=reason), force=True))
 
 
@@ -130,7 +131,7 @@ def _answer(request: Callable[[SyncPrefectClient], _T]) -> _T:
 
 
 def _ask(request: Callable[[], _T]) -> _T:
-    """A request's answer. Raises Unreachable for a server that is gone or too slow, whichever way Prefect says so."""
+    """A request's answer. Raises Unreachable for a server that is gone or too slow, in any form that Prefect raises."""
     try:
         return request()
     except (httpx.HTTPError, RuntimeError) as fault:
@@ -149,19 +150,6 @@ def _words(state: Any) -> str:
     return f"{state.name}: {state.message or ''}" if state else ""
 
 
-@dataclass(frozen=True)
-class Hosts:
-    """How a study goes to many hosts: the meeting place, the deployment, shards and patience (None: the defaults)."""
-
-    address: str
-    deployment: str = DEPLOYMENT
-    shards: int | None = None
-    jobs: int | None = None
-    beat_s: float = BEAT_S
-    patience_s: float = PATIENCE_S
-    start_s: float = START_S
-
-
 def study_on_hosts(made: Plan, hosts: Hosts, on_ending: OnEnding) -> list[str]:
     """`flows.study.run_study.run` on many hosts: the same folder, the same study.json. See `on_hosts`."""
     made.write()
@@ -169,30 +157,30 @@ def study_on_hosts(made: Plan, hosts: Hosts, on_ending: OnEnding) -> list[str]:
 
 
 def on_hosts(study: str, jobs: Sequence[Job], hosts: Hosts, on_ending: OnEnding) -> list[str]:
-    """Run a study's jobs on whatever hosts serve the deployment; every case is brought home and tracked here.
+    """Run a study's jobs on the hosts that serve the deployment; every result is collected and tracked here.
 
-    Returns which shards were submitted again, and why. Raises ConfigError, Unreachable (the storage or the
-    server is gone for ten minutes); started again it goes on.
+    Returns the shards submitted again, with reasons. Raises ConfigError, Unreachable (storage or server gone for ten
+    minutes); the same command again resumes the study.
     """
-    with track_cases.following(jobs):
+    with track_cases.tracked_batch(jobs):
         left = list(_not_here(jobs, on_ending))
         return _away(study, left, hosts, on_ending) if left else []
 
 
 def _away(study: str, left: Sequence[Job], hosts: Hosts, on_ending: OnEnding) -> list[str]:
-    share = Share(hosts.address)
+    share = SharedFolder(hosts.address)
     laying = str(uuid.uuid4())
     shards = lay_out(share, study, left, hosts.shards, laying)
     parameters = {"address": hosts.address, "laying": laying, "beat_s": hosts.beat_s}
     parameters |= {"jobs": hosts.jobs} if hosts.jobs else {}
     pool = PrefectPool(study, parameters, hosts.deployment)
-    watch = Watch(share, pool, shards, _homecoming(share, left, on_ending), hosts.patience_s, hosts.start_s)
-    follow(watch, time.monotonic, lambda: time.sleep(POLL_S))
+    watch = ShardWatch(share, pool, shards, _homecoming(share, left, on_ending), hosts.patience_s, hosts.start_s)
+    watch_until_done(watch, time.monotonic, lambda: time.sleep(POLL_S))
     return watch.again
 
 
 def _not_here(jobs: Sequence[Job], on_ending: OnEnding) -> Iterator[Job]:
-    """Jobs whose results do not lie here yet; the others are tracked and told of."""
+    """Jobs without a result here; the others are tracked and reported."""
     for job in jobs:
         result = job.folder.finished(job.digest)
         if result is None:
@@ -202,9 +190,9 @@ def _not_here(jobs: Sequence[Job], on_ending: OnEnding) -> Iterator[Job]:
             on_ending(job, ending, track_cases.track_safely(job, ending))
 
 
-def _homecoming(share: Share, jobs: Sequence[Job], on_ending: OnEnding) -> Callable[[Mark], None]:
-    """What brings a marked result into its folder, tracks it and tells of it."""
-    by_work = {(work.arm, work.case, work.digest): job for job in jobs for work in (work_of(job),)}
+def _homecoming(share: SharedFolder, jobs: Sequence[Job], on_ending: OnEnding) -> Callable[[Mark], None]:
+    """A function that copies a marked result into its folder, tracks it and reports it."""
+    by_work = {(work.arm, work.case, work.digest): job for job in jobs for work in (shard_job(job),)}
 
     def home(mark: Mark) -> None:
         job = by_work[mark.arm, mark.case, mark.digest]
@@ -212,7 +200,7 @@ def _homecoming(share: Share, jobs: Sequence[Job], on_ending: OnEnding) -> Calla
             share.fetch(mark, partial)
         result = job.folder.finished("" if mark.status == "failed" else job.digest)
         if result is None:
-            raise ConfigError(f"{job.folder.path}: the result from {mark.host} is not whole; start the study again")
+            raise ConfigError(f"{job.folder.path}: the result from {mark.host} is incomplete; start the study again")
         ending = Ending(result)
         on_ending(job, ending, track_cases.track_safely(job, ending))
 

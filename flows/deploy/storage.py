@@ -1,8 +1,8 @@
 """A folder at any fsspec address (file, s3://, gs://, memory://), with the few operations that an inbox needs.
 
-What is promised is said operation by operation, since stores differ: `create` is exclusive on local files (a
+Guarantees differ by store and are given per operation: `create` is exclusive on local files (a
 hard link) and where the store has conditional writes (S3, Google, Azure through fsspec's create mode); elsewhere it
-looks first and reads back afterwards, which two writers in the same instant can defeat. Knows no report.
+looks first and reads back afterwards, which fails for two writers in the same instant.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from typing import Any
 from sgcad_core.errors import ConfigError, MissingTool
 
 HIDDEN = ".inbox"
-"""Everything that is ours and no report: claims, ledger, half-written files."""
+"""Folder of claims, ledger and half-written files; no reports."""
 _TIMES = ("mtime", "LastModified", "last_modified", "updated", "created")
 
 
 @dataclass(frozen=True)
 class Stamp:
-    """A file as a listing shows it; `modified` in seconds since 1970, 0 where the store tells none."""
+    """A file in a listing; `modified` in seconds since 1970, 0 if the store does not give it."""
 
     name: str
     size: int
@@ -43,7 +43,7 @@ class Entry:
 
     @property
     def newest(self) -> float:
-        """When it was last written to."""
+        """Time of the last change of its files."""
         return max((f.modified for f in self.files), default=0.0)
 
 
@@ -64,7 +64,7 @@ class Place:
             raise MissingTool(f"{self.address}: {fault} (`pip install 'sg-cadvlm[hosts]'` brings s3fs)") from fault
         except ValueError as fault:
             raise ConfigError(
-                f"{self.address}: no address that can be opened ({fault}); give a folder or s3://..."
+                f"{self.address}: cannot be opened ({fault}); give a folder or an address such as s3://bucket/folder"
             ) from fault
         object.__setattr__(self, "fs", fs)
         object.__setattr__(self, "root", root.rstrip("/"))
@@ -80,13 +80,13 @@ class Place:
 
     # ------------------------------------------------------------------ looking
     def entries(self) -> list[Entry]:
-        """Files and folders directly here, by name, hidden ones left out; none where nothing is."""
+        """Files and folders directly in the address, by name, without hidden ones; empty if it does not exist."""
         self._finish_moves()
         names = sorted((name, about) for name, about in self._list("").items() if not name.startswith("."))
         return [entry for name, about in names if (entry := self._entry(name, about))]
 
     def entry(self, name: str) -> Entry | None:
-        """One of them as it is now; None if it is gone."""
+        """An entry's current state; None if it is gone."""
         try:
             return self._entry(name, self.fs.info(self.path(name)))
         except OSError:
@@ -124,7 +124,7 @@ class Place:
         return content
 
     def modified(self, name: str) -> float | None:
-        """When a file was written last, seconds since 1970; None if it is not there."""
+        """Time of a file's last change, seconds since 1970; None if it does not exist."""
         try:
             return _stamp("", self.fs.info(self.path(name))).modified
         except FileNotFoundError:
@@ -132,7 +132,7 @@ class Place:
 
     # ------------------------------------------------------------------ writing
     def create(self, name: str, content: bytes) -> bool:
-        """Make a file that nobody has made; False if it is there."""
+        """Make a file; False if it exists already."""
         target = self.path(name)
         if self.is_local:
             partial = self._partial(content)
@@ -146,7 +146,7 @@ class Place:
             return True
         try:
             self.fs.pipe_file(target, content, mode="create")
-        except OSError:  # it is there, in whatever words the store says so; or a repeated request met our own first
+        except OSError:  # the file exists, or a repeated request met the first one
             if self.read(name) is None:
                 raise
         return self.read(name) == content
@@ -176,7 +176,7 @@ class Place:
 
     # ------------------------------------------------------------------ moving
     def move(self, entry: Entry, target: str) -> None:
-        """Move an entry; what stood at the target gives way. A killed move is finished by whoever looks next."""
+        """Move an entry, replacing the target. A killed move is finished by the next process that lists the folder."""
         if self.is_local:
             goal = Path(self.path(target))
             goal.parent.mkdir(parents=True, exist_ok=True)
@@ -193,7 +193,7 @@ class Place:
         self._leave(marker)
 
     def leaving(self) -> set[str]:
-        """Entries whose copy is complete and whose files are being removed: no reports any more."""
+        """Entries whose copy is complete and whose files are being removed."""
         return {name for _, name, _ in self._moves()}
 
     def _finish_moves(self) -> None:
@@ -208,7 +208,7 @@ class Place:
                 yield f"{HIDDEN}/leaving/{file}", note["name"], [Stamp(*values) for values in note["files"]]
 
     def _leave(self, marker: str) -> None:
-        """Remove the files of a finished copy, unless they were written anew, then the note."""
+        """Remove the files of a finished copy, unless they were written again, then the note."""
         for found, name, files in list(self._moves()):
             there = self.entry(name) if found == marker else None
             for file in there.files if there else ():

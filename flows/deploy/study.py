@@ -1,19 +1,17 @@
-"""The `study` deployment: a study file, run by hand from Prefect's page with its parameters. Thin: see flows/study.
+"""The `study` deployment: a study file, started by hand from Prefect's page with its parameters.
 
 Import after `settings.quiet_libraries()`.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from pathlib import Path
 
 from prefect import flow
 
-from flows.batch.evaluate_flow import drive
-from flows.batch.plan_batch import MAX_JOBS, Crew, Job
+from flows.batch.batch_flow import counts_inside_flow
+from flows.batch.plan_batch import MAX_JOBS
 from flows.batch.prefect_case_task import threads
-from flows.case.chain import Ending
 from flows.deploy.defaults import overrides_of
 from flows.study.plan import plan
 from flows.study.spec import load_study
@@ -29,7 +27,7 @@ def study_flow(
     jobs: int | None = None,
     fresh: bool = False,
 ) -> dict[str, int]:
-    """Run a study, as `sgcad study` does; how many cases ended in which status. `file`: a name or a path."""
+    """Run a study, as `sgcad study` does; the number of cases by status. `file`: a name or a path."""
     made = plan(
         load_study(Path(file)),
         Path(out),
@@ -40,12 +38,4 @@ def study_flow(
         fresh=fresh,
     )
     made.write()
-    crew, counts = Crew(made.batch), Counter[str]()
-
-    def count(job: Job, ending: Ending, untracked: str) -> None:
-        counts[ending.result["status"]] += 1
-
-    crew.begin(made.jobs)
-    drive(made.jobs, crew, count)
-    crew.close()
-    return dict(counts)
+    return counts_inside_flow(made.batch, made.jobs)

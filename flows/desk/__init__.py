@@ -1,6 +1,6 @@
-"""`sgcad desk`: cases of a results folder in a browser, to see which to trust, mend the others, and go on.
+"""`sgcad desk`: cases of a results folder in a browser, to see which to trust and to correct the others.
 
-`rows` is what the list shows of a case, `index` keeps all rows of a folder in memory, `choosing` filters and sorts
-them; `case` and `roadmap` are what a case's page shows; `mending` lays a person's edits over a case in a process of
-its own; `guard` keeps strangers out; `pages` and `app` put them on the web, `command` on the command line.
+`index` keeps the list's rows of a folder in memory; `views` has rows, filters, and the contents of a case's page;
+`mending` applies a person's edits to a case in a process of its own; `guard` refuses foreign requests; `pages`,
+`changes` and `app` serve the pages; `command` is the command line.
 """

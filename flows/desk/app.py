@@ -1,4 +1,4 @@
-"""The web application: pages, errors in words, the guard around all of it. Starts no server."""
+"""The web application: pages, error pages, and the guard around them. Starts no server."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from flows.desk import changes, pages
-from flows.desk.context import Desk, Gone
+from flows.desk.context import CaseGone, Desk
 from flows.desk.guard import Gate, Guard
 from flows.desk.index import Index
 from flows.desk.links import Links
@@ -24,14 +24,14 @@ def application(root: Path, gate: Gate | None = None, mlflow: str = "", prefect:
     app.state.desk = desk
     app.include_router(pages.router)
     app.include_router(changes.router)
-    app.add_exception_handler(Gone, _gone)
+    app.add_exception_handler(CaseGone, _gone)
     app.add_exception_handler(HTTPException, _http)
     app.add_middleware(Guard, gate=gate or Gate())
     return app
 
 
 def _life(desk: Desk) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:
-    """Begin to read as the server starts; end the processes with it."""
+    """Start reading the folder with the server; end the worker processes with it."""
 
     @asynccontextmanager
     async def life(_: FastAPI) -> AsyncIterator[None]:
@@ -43,13 +43,13 @@ def _life(desk: Desk) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:
 
 
 def _gone(request: Request, fault: Exception) -> Response:
-    return _page(request, 404, "Not here", str(fault))
+    return _page(request, 404, "Not found", str(fault))
 
 
 def _http(request: Request, fault: Exception) -> Response:
     status = fault.status_code if isinstance(fault, HTTPException) else 500
-    words = {404: ("Not here", "There is no such page."), 405: ("Not so", "This page only shows; it takes no changes.")}
-    title, text = words.get(status, ("That did not work", "The desk cannot answer this."))
+    words = {404: ("Not found", "There is no such page."), 405: ("Not allowed", "This page accepts no changes.")}
+    title, text = words.get(status, ("Fault", "The desk cannot answer this request."))
     return _page(request, status, title, text)
 
 

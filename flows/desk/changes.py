@@ -1,4 +1,4 @@
-"""The desk's answers to changes: edit, undo, run again. JSON in, JSON out; nothing is answered without the guard."""
+"""The desk's requests that change a case: edit, undo, run again; JSON in, JSON out, behind the guard."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
 
 from flows.desk.context import Desk
-from flows.desk.mending import Changed, Done, Kind, Order, told
+from flows.desk.mending import CaseChanged, ChangeResult, Kind, Order, told
 from sgcad_core.errors import SgcadError, SimulationFailed, WrongEdit
 
 router = APIRouter()
 Plain = str | int | float | bool | list[str] | None
 
 
-class Asked(BaseModel):
-    """A change as the page asks for it."""
+class ChangeRequest(BaseModel):
+    """A change as a page requests it."""
 
     model_config = ConfigDict(extra="forbid")
     version: str = Field(max_length=80)
@@ -30,13 +30,13 @@ class Asked(BaseModel):
 
 @router.post("/edit/{key:path}")
 async def edit(request: Request, key: str) -> Response:
-    """Lay facts over a case."""
+    """Apply facts to a case."""
     return await _change(request, key, "revise")
 
 
 @router.post("/undo/{key:path}")
 async def undo(request: Request, key: str) -> Response:
-    """Take the last change back."""
+    """Undo the last change."""
     return await _change(request, key, "undo")
 
 
@@ -47,16 +47,16 @@ async def rerun(request: Request, key: str) -> Response:
 
 
 async def _change(request: Request, key: str, kind: Kind) -> Response:
-    """200 with what is said at which field; 409 the case is another by now; 422 refused, with the reason."""
+    """Answer 200 with findings by field, 409 if the case has changed, 422 with the reason of a refusal."""
     desk: Desk = request.app.state.desk
     try:
-        asked = Asked.model_validate_json(await request.body())
+        asked = ChangeRequest.model_validate_json(await request.body())
     except ValidationError as fault:
         return JSONResponse({"text": f"The page sent no change: {fault.errors()[0]['msg']}. Reload it."}, 400)
     _, folder = await run_in_threadpool(desk.case, key)
     order = Order(kind, folder, asked.edits, asked.who, asked.why, asked.stamp or None)
     try:
-        done: Done = await run_in_threadpool(desk.mender.change, order, asked.version)
+        done: ChangeResult = await run_in_threadpool(desk.mender.change, order, asked.version)
     except SgcadError as fault:
         return JSONResponse(_refusal(fault), _status(fault))
     return JSONResponse({"status": done.status, "seconds": round(done.seconds, 3), "changed": done.changed,
@@ -64,11 +64,11 @@ async def _change(request: Request, key: str, kind: Kind) -> Response:
 
 
 def _status(fault: SgcadError) -> int:
-    return 409 if isinstance(fault, Changed) else 503 if isinstance(fault, SimulationFailed) else 422
+    return 409 if isinstance(fault, CaseChanged) else 503 if isinstance(fault, SimulationFailed) else 422
 
 
 def _refusal(fault: SgcadError) -> dict[str, Any]:
-    """The reason, and what concerns which field."""
+    """The reason of a refusal, and findings by field."""
     fields: dict[str, list[str]] = {}
     for finding in getattr(fault, "findings", ()) if isinstance(fault, WrongEdit) else ():
         fields.setdefault(finding.where, []).append(finding.what)

@@ -1,4 +1,4 @@
-"""What the desk's pages share: the folder, its index, links, the mending worker, the templates."""
+"""The shared state of the desk's pages: index, links, mending workers, templates."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ BASIS_WORDS: Mapping[str, str] = {
 }  # fmt: skip
 
 
-class Gone(Exception):
-    """A case that is not there (any more); the message is for the person."""
+class CaseGone(Exception):
+    """A case that does not exist (any more); the message is shown."""
 
 
 @dataclass
@@ -50,9 +50,9 @@ class Desk:
         """A case's row and folder. Raises Gone, also for one whose result cannot be read."""
         row, folder = self.index.row(key), self.index.folder(key)
         if row is None or folder is None:
-            raise Gone(f"There is no case {key!r} in this folder: it was removed, or is being written anew just now.")
+            raise CaseGone(f"There is no case {key!r} in this folder: it was removed, or is being written now.")
         if row.status == UNREADABLE:
-            raise Gone(row.reason)
+            raise CaseGone(row.reason)
         return row, folder
 
     def result(self, folder: Path) -> dict[str, Any]:
@@ -61,7 +61,7 @@ class Desk:
             result = json.loads((folder / RESULT).read_bytes())
         except (OSError, ValueError) as fault:
             why = "is gone" if isinstance(fault, FileNotFoundError) else "cannot be read"
-            raise Gone(f"{RESULT} of this case {why}; reload in a moment, or run the case again.") from fault
+            raise CaseGone(f"{RESULT} of this case {why}; reload in a moment, or run the case again.") from fault
         return dict(result) if isinstance(result, dict) else {}
 
     def render(self, request: Request, name: str, status: int = 200, **context: Any) -> HTMLResponse:

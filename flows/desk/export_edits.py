@@ -1,10 +1,10 @@
-"""What people mended, as data: `sgcad desk export RUNS --out DIR`.
+"""`sgcad desk export RUNS --out DIR`: cases corrected by people, as data.
 
-    pairs.jsonl          a line a mended case: report, facts with reasons, the specs as read and as mended
-    truth/<case>.json    the mended case as a label, for `sgcad score` and like scorers
-    rows.jsonl           a line a mended case for training: narrative, drawing, the layout and the behavior to answer
+    pairs.jsonl          one line per corrected case: report, facts with reasons, the specs as read and as corrected
+    truth/<case>.json    the corrected case as a label, for `sgcad score`
+    rows.jsonl           one line per corrected case for training: narrative, drawing, layout and behavior
 
-Only cases with a person's fact are data: nobody has looked at the others. Reads run folders; starts nothing.
+Only cases with a person's fact are exported: the others were not checked. Reads run folders; starts nothing.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from flows.case import case_folder, person_facts
+from flows.case import person_facts
+from flows.case_files import case_folder
 from sgcad_core.errors import BadInput, ConfigError, SgcadError
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.records.edits import Edit, effective
@@ -51,16 +52,18 @@ class Mended:
 
 
 def export(runs: Path, out: Path) -> list[str]:
-    """Write pairs, truth and rows of one config's mended cases; what was written, in words.
+    """Write pairs, truth and rows of one config's corrected cases; lines on what was written.
 
-    Raises BadInput where there is no result, or nothing was mended; ConfigError where `out` cannot be written.
+    Raises BadInput where there is no result or no corrected case; ConfigError where `out` cannot be written.
     """
     if not any(runs.glob("*/result.json")):
         raise BadInput(f"{runs}: no <case>/result.json in it; give the folder of one config, such as runs/template")
     left: list[str] = []
     found = list(mended(runs, left))
     if not found:
-        raise BadInput(f"{runs}: nobody has changed a fact of these cases: nothing to export; see `sgcad revise`")
+        raise BadInput(
+            f"{runs}: no fact of these cases was changed by a person, so nothing to export; see `sgcad revise`"
+        )
     try:
         _write(found, out)
     except OSError as fault:
@@ -72,7 +75,7 @@ def export(runs: Path, out: Path) -> list[str]:
 
 
 def mended(runs: Path, left: list[str]) -> Iterator[Mended]:
-    """Cases with a person's facts that came out with both specs; `left` is told of the others."""
+    """Generated cases with a person's facts and both specs; `left` gets a line for each of the others."""
     for file in sorted(runs.glob("*/result.json")):
         folder = file.parent
         result = case_folder.CaseFolder(runs.parent, runs.name, folder.name).result() or {}
@@ -92,8 +95,8 @@ def mended(runs: Path, left: list[str]) -> Iterator[Mended]:
 def _edits(folder: Path) -> tuple[Edit, ...]:
     """The facts beside the report of a case; () where the report was moved: the values are in the result."""
     try:
-        source = Path((folder / person_facts.SOURCE).read_text(encoding="utf-8", errors="surrogateescape"))
-    except OSError:
+        source = person_facts.report_path(folder)
+    except BadInput:
         return ()
     return effective(read_edits(facts_file(source)))
 
@@ -112,7 +115,7 @@ def _write(found: Iterable[Mended], out: Path) -> None:
 
 # ------------------------------------------------------------------ pairs and rows
 def pair(case: Mended) -> dict[str, Any]:
-    """A case as read and as mended, JSON-able."""
+    """A case as read and as corrected, JSON-able."""
     was = case.specs.as_read or {}
     return {
         "case": case.case,
@@ -125,7 +128,7 @@ def pair(case: Mended) -> dict[str, Any]:
 
 
 def row(case: Mended, out: Path) -> dict[str, Any]:
-    """A case as an example to learn from: the evidence and both answers. `layout` is null where no hub has all roads.
+    """A case as a training row: the evidence and both answers. `layout` is null where no hub has all roads.
 
     The drawing is copied to `out`/drawings and named relative to `out`.
     """
@@ -151,7 +154,7 @@ def _drawing(case: Mended, out: Path) -> str | None:
 
 # ------------------------------------------------------------------ truth
 def label(case: Mended) -> dict[str, Any]:
-    """The mended case as a truth file: network, vehicles, events and conditions."""
+    """The corrected case as a truth file: network, vehicles, events and conditions."""
     behavior = case.behavior
     return {
         "case": case.case,

@@ -1,14 +1,14 @@
-"""Keeps strangers out of the desk: whom a request may be addressed to, who may look, who may change.
+"""Access to the desk: host names that it answers to, its token, and the origin of changes.
 
-- *Host*: a request for another name than the desk's own is answered 421, so that no foreign page can reach the desk
-  through a name that it points here (DNS rebinding).
-- *Token*: where one is set, everything is answered 401 without it. `?token=` is changed into a cookie at the first
-  visit and vanishes from the address; comparison takes the same time however much is right.
+- *Host*: a request for another host name is answered 421, so that no foreign page can reach the desk through a name
+  that it points here (DNS rebinding).
+- *Token*: where one is set, requests without it are answered 401. `?token=` becomes a cookie at the first visit and is
+  removed from the address; the comparison takes constant time.
 - *Changes*: a POST must come from the desk's own pages (Origin, Sec-Fetch-Site) and carry a token that belongs to the
-  visitor's same-site cookie; so a link or a form elsewhere changes nothing (CSRF).
-- *Pages*: a Content-Security-Policy without inline code; nothing may frame the desk, nothing is sent on as referrer.
+  visitor's same-site cookie, so that links and forms of other sites change nothing (CSRF).
+- *Pages*: a Content-Security-Policy without inline code; no framing by others, no referrer.
 
-One ASGI layer around the application; knows no case.
+One ASGI layer around the application.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ HEADERS: Mapping[str, str] = {
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cache-Control": "no-store",
 }
-"""Of every answer that does not say otherwise."""
+"""Headers of every answer that does not set them itself."""
 VISITOR, PASS = "sgcad_desk", "sgcad_desk_pass"
 CSRF_HEADER = "x-desk-token"
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
@@ -48,13 +48,13 @@ BODY_LIMIT = 1_000_000
 
 @dataclass(frozen=True)
 class Gate:
-    """Who may come in. `names`: host names that the desk answers to; `token`: "" where none is needed."""
+    """Conditions of access. `names`: host names that the desk answers to; `token`: "" where none is needed."""
 
     names: frozenset[str] = frozenset(LOOPBACK)
     token: str = ""
     any_address: bool = False
     """Whether any IP address is a name of the desk too, as where it listens on all of a machine's: a page elsewhere
-    cannot point an address at somebody."""
+    cannot point an address at another machine."""
     secret: bytes = field(default_factory=lambda: secrets.token_bytes(32), repr=False)
 
     def is_own(self, host: str) -> bool:
@@ -104,7 +104,9 @@ class Guard:
         host = request.headers.get("host", "")
         if not self._named(host):
             known = ", ".join(sorted(self.gate.names))
-            return PlainTextResponse(f"This is no address of this desk. It answers to: {known} (--name adds one).", 421)
+            return PlainTextResponse(
+                f"This is not an address of this desk. It answers to: {known} (--name adds one).", 421
+            )
         if not self.gate.admits(request.cookies.get(PASS, "")):
             return self._first_visit(request)
         if request.method not in ("GET", "HEAD"):
@@ -118,7 +120,7 @@ class Guard:
             return False
 
     def _first_visit(self, request: Request) -> Response:
-        """The token in the address becomes a cookie; without it nothing is told."""
+        """Turn the token in the address into a cookie; answer 401 without it."""
         if request.method == "GET" and self.gate.admits(request.query_params.get("token", "")):
             rest = urlencode([(k, v) for k, v in request.query_params.multi_items() if k != "token"])
             answer = RedirectResponse(_local(request.url.path) + (f"?{rest}" if rest else ""), 303)
@@ -127,7 +129,7 @@ class Guard:
         return PlainTextResponse("Open the address with ?token=... that `sgcad desk` printed when it started.", 401)
 
     def _change(self, request: Request, host: str) -> Response | None:
-        """None for a change that one of our own pages asks for."""
+        """None for a change that a page of the desk requests, else the refusal."""
         origin = request.headers.get("origin")
         site = request.headers.get("sec-fetch-site", "same-origin")
         foreign = site not in ("same-origin", "none") or (origin is not None and urlsplit(origin).netloc != host)
@@ -137,14 +139,14 @@ class Guard:
             return PlainTextResponse("This change does not come from a page of this desk. Reload the page.", 403)
         length = request.headers.get("content-length", "")
         if not (length.isascii() and length.isdigit()):
-            return PlainTextResponse("A change says how long it is (Content-Length).", 411)
+            return PlainTextResponse("A change needs the header Content-Length.", 411)
         if int(length) > BODY_LIMIT:
-            return PlainTextResponse(f"{length} bytes are no edit; {BODY_LIMIT} are the limit.", 413)
+            return PlainTextResponse(f"{length} bytes are too many for an edit; the limit is {BODY_LIMIT}.", 413)
         return None
 
 
 def _local(path: str) -> str:
-    """A path that cannot be read as another host's address."""
+    """A path that cannot be taken for another host's address."""
     return "/" + path.lstrip("/\\")
 
 

@@ -1,12 +1,13 @@
 """All cases below a results folder, kept in memory and read again where a result.json changed.
 
-A thread of its own reads, so that a page never waits for 10,000 files: it gets what is known by then, and how much is
-still to come. Cases are written whole or not at all (flows/case/case_folder.py); what cannot be read all the same is a
-row that says so. Reads only.
+A thread of its own reads, so that a page never waits for 10,000 files: a page gets the rows known by then and the
+number still to come. Cases are written whole or not at all (flows/case_files/case_folder.py); a result that cannot be
+read becomes a row that says so. Reads only.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import threading
@@ -51,7 +52,7 @@ class Index:
         self._reader: threading.Thread | None = None
 
     def listing(self, wait_s: float = PATIENCE_S) -> Listing:
-        """What is known now; looks through the folder again if it was not just done."""
+        """The rows known now; the folder is read again unless that was just done."""
         reader = self._refresh()
         if reader is not None:
             reader.join(wait_s)
@@ -59,7 +60,7 @@ class Index:
             return Listing({key: row for key, (_, row) in self._rows.items()}, self._pending)
 
     def row(self, key: str) -> Row | None:
-        """One case, as it is on disk now; None where there is no such case. Never leaves the results folder."""
+        """One case as it is on disk now; None for an unknown case. Never leaves the results folder."""
         folder = self.folder(key)
         if folder is None:
             return None
@@ -89,7 +90,7 @@ class Index:
         return folder if inside else None
 
     def _refresh(self) -> threading.Thread | None:
-        """The thread that reads, started if none does and the last look is old."""
+        """The reading thread, started if none runs and the last reading is old."""
         with self._lock:
             if self._reader and self._reader.is_alive():
                 return self._reader
@@ -119,7 +120,7 @@ class Index:
         if known and known[0] == stamp:
             return known[1]
         if stamp[1] > LARGEST:
-            return unreadable(key, f"{RESULT} has {stamp[1] / 1e6:.0f} MB, which no case comes to")
+            return unreadable(key, f"{RESULT} has {stamp[1] / 1e6:.0f} MB, too many for a case")
         try:
             return row_of(key, json.loads((self.root / key / RESULT).read_bytes()))
         except OSError as fault:
@@ -154,9 +155,26 @@ def _below(folder: str, prefix: str, depth: int) -> Iterator[tuple[str, Stamp]]:
 
 
 def _may_hold(entry: os.DirEntry[str]) -> bool:
-    """A folder, not hidden (unfinished cases are), whose name a web address can carry; no link."""
+    """Whether it is a folder, not hidden (unfinished cases are) and no link, with a name valid in a web address."""
     try:
         entry.name.encode()
         return not entry.name.startswith(".") and entry.is_dir(follow_symlinks=False)
     except (OSError, UnicodeEncodeError):
         return False
+
+
+# ------------------------------------------------------------------ the version of a case
+STATES = (RESULT, "facts.yaml", "player.html")
+"""Files that change when a case is run again or edited."""
+
+
+def version_of(folder: Path) -> str:
+    """Fingerprint of the case's state on disk; a page shows it, so that no edit is applied to an unseen state."""
+    found = hashlib.sha256()
+    for name in STATES:
+        try:
+            about = (folder / name).stat()
+            found.update(f"{name} {about.st_mtime_ns} {about.st_size} {about.st_ino}\n".encode())
+        except OSError:
+            found.update(f"{name} -\n".encode())
+    return found.hexdigest()[:20]

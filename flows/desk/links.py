@@ -1,7 +1,7 @@
-"""A case's links as the desk shows them: to the runs that its folder names, on pages that are served now.
+"""A case's links in the desk: to the runs that its folder names, on pages that are served now.
 
-A result of a version that kept no links has its MLflow run looked up in the sqlite file beside it (read only), and its
-task run is searched by name. Knows no client of either.
+For a result without links its MLflow run is looked up in the sqlite file beside it (read only), and its task run is
+searched by name.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
 
-from flows.case import case_links
+from flows.case_files import case_links
 
 DATABASE = "mlflow.db"
 _RUN = """
@@ -25,7 +25,7 @@ where r.lifecycle_stage = 'active' order by r.start_time desc limit 1
 
 @dataclass(frozen=True)
 class Links:
-    """Addresses of the two pages; "" where `make up` is asked, and where they are not served."""
+    """Addresses of the two pages; "": as noted by `make up`, if they are served."""
 
     root: Path
     mlflow: str = ""
@@ -66,6 +66,6 @@ def _asked(file: Path, config: str, case: str) -> tuple[str, str] | None:
     try:
         with closing(sqlite3.connect(f"file:{quote(str(file))}?mode=ro", uri=True, timeout=0.5)) as database:
             row = database.execute(_RUN, (case, config)).fetchone()
-    except sqlite3.Error:  # locked or of another version: the page does without the link
+    except sqlite3.Error:  # locked or of another version: no link
         return None
     return (str(row[0]), str(row[1])) if row else None

@@ -1,8 +1,7 @@
-"""Changing a case from the desk: in a process of its own that stays warm, so that a planner's or a simulator's death
-kills no page, and only what a person has really seen is changed.
+"""Changes of a case from the desk, made in worker processes, so that a crash of planner or simulator ends no page.
 
-The near end is `Mender`; `work` is what the far end does. The page's rules: a change carries the version of the case
-that was on the screen, and is refused where the case on disk is another one by now.
+`Mender` is the desk's side, `work` that of the worker. A change carries the version of the case that was on the screen
+and is refused if the case on disk has changed since.
 """
 
 from __future__ import annotations
@@ -16,20 +15,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
-from flows.desk.views.case_version import version_of
+from flows.desk.index import version_of
 from flows.desk.views.edit_form import Findings
 from sgcad_core.errors import SgcadError, SimulationFailed
 from sgcad_core.system.worker_process import Worker
 
 MEND_S, RUN_S = 60.0, 600.0
-"""Longest mending; longest running again (a model may be asked)."""
+"""Time limits of an edit and of running a case again (which may ask a model)."""
 WORKERS = 2
-"""Processes; the second one starts when two people change something at once."""
+"""Worker processes; the second one starts when two changes are made at once."""
 Kind = Literal["revise", "undo", "rerun", "warm"]
 
 
-class Changed(SgcadError):
-    """The case on disk is another than the one on the person's screen."""
+class CaseChanged(SgcadError):
+    """The case on disk differs from the one on the person's screen."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +44,8 @@ class Order:
 
 
 @dataclass(frozen=True)
-class Done:
-    """What came of a change: what is to be said at which field."""
+class ChangeResult:
+    """Result of a change, with findings by field."""
 
     status: str
     findings: Findings
@@ -55,7 +54,7 @@ class Done:
 
 
 class Mender:
-    """Carries changes out, each case's one after the other. Thread-safe."""
+    """Makes changes, those of one case one after the other. Thread-safe."""
 
     def __init__(self, target: str = "flows.desk.mending:work") -> None:
         self._workers = [Worker(target) for _ in range(WORKERS)]
@@ -68,7 +67,7 @@ class Mender:
         self._lock = threading.Lock()
 
     def warm(self, folder: Path) -> None:
-        """Prepare in the background for changes of this case and those of its config; once each."""
+        """Prepare a worker in the background for changes of cases of this config, once per config."""
         with self._lock:
             known = folder.parent in self._warmed
             self._warmed.add(folder.parent)
@@ -79,24 +78,24 @@ class Mender:
         with self._worker() as worker, suppress(SgcadError):  # the first change will tell
             worker.call(Order("warm", folder), timeout_s=MEND_S)
 
-    def change(self, order: Order, version: str) -> Done:
-        """Carry out a change of the case as the person saw it.
+    def change(self, order: Order, version: str) -> ChangeResult:
+        """Make a change of the case as the person saw it.
 
         Raises Changed, WrongEdit and BadInput (nothing was changed), SimulationFailed (the process died).
         """
         with self._alone(order.folder), self._worker() as worker:
             if version != version_of(order.folder):
-                raise Changed(
+                raise CaseChanged(
                     "This case was changed on disk since you opened it (another person, or a run). Your change was not "
                     "made: look at the case as it is now, then make it again."
                 )
-            done: Done = worker.call(order, timeout_s=RUN_S if order.kind == "rerun" else MEND_S)
+            done: ChangeResult = worker.call(order, timeout_s=RUN_S if order.kind == "rerun" else MEND_S)
             with self._lock:
                 self._said[order.folder] = (version_of(order.folder), done.findings)
         return done
 
     def said(self, folder: Path) -> Findings:
-        """What validators and planner said of the last change, while the case is as that change left it."""
+        """Findings of the last change, as long as the case is in the state that it left."""
         with self._lock:
             version, findings = self._said.get(folder, ("", {}))
         return findings if version == version_of(folder) else {}
@@ -123,8 +122,8 @@ class Mender:
 
 
 # ------------------------------------------------------------------ the far end
-def work(order: Order) -> Done | None:
-    """Carry an order out over there. Raises WrongEdit, BadInput, ConfigError."""
+def work(order: Order) -> ChangeResult | None:
+    """Make a change in the worker process. Raises WrongEdit, BadInput, ConfigError."""
     from flows.case import revise_case
 
     if order.kind == "warm":
@@ -137,7 +136,7 @@ def work(order: Order) -> Done | None:
     else:
         done = revise_case.revise(order.folder, order.edits, who=order.who, why=order.why, seen=order.seen)
     said = {name: [_line(finding) for finding in found] for name, found in done.findings.items()}
-    return Done(str(done.result["status"]), said, done.seconds, done.changed)
+    return ChangeResult(str(done.result["status"]), said, done.seconds, done.changed)
 
 
 def _line(finding: Any) -> str:
@@ -145,21 +144,23 @@ def _line(finding: Any) -> str:
     return f"{finding.what}{f': {finding.value}' if finding.value else ''}{remedy}"
 
 
-def _rerun(folder: Path) -> Done:
-    """The whole case once more, as its config says and with what people said of it."""
-    from flows.batch import find_cases
-    from flows.case import chain, revise_case
+def _rerun(folder: Path) -> ChangeResult:
+    """Run the whole case again under its config, with its edits."""
+    from flows.case import revise_case, run_case
+    from flows.case_files import find_cases
     from sgcad_core.asking.refine import run_at_once
 
     case = revise_case.opened(folder)
     digest = find_cases.digest_of(case.case, case.config)
-    ending = chain.run_case(case.config, case.case, folder.parent.parent, digest, run_at_once)
-    return Done(str(ending.result["status"]), {}, float(sum(ending.result["seconds"].values())), True)
+    ending = run_case.run_case(case.config, case.case, folder.parent.parent, digest, run_at_once)
+    return ChangeResult(str(ending.result["status"]), {}, float(sum(ending.result["seconds"].values())), True)
 
 
 def _warm_up(folder: Path) -> None:
-    """Do once, for nothing, what the first change of such a case would wait for: imports, plugins, the simulator's own
-    process, matplotlib's fonts. A config with a model is only built: its model is not asked for nothing."""
+    """Load what the first change would wait for: imports, plugins, the simulator's process, matplotlib's fonts.
+
+    A config with a model is only built.
+    """
     from matplotlib.figure import Figure
 
     from flows.case import revise_case
@@ -175,7 +176,7 @@ def _warm_up(folder: Path) -> None:
 
 
 def told(fault: SgcadError) -> str:
-    """A fault for the person who made the change."""
+    """A fault in words for the author of the change."""
     if isinstance(fault, SimulationFailed):
-        return f"The change could not be carried out, nothing was changed: {fault}"
+        return f"The change could not be made, nothing was changed: {fault}"
     return str(fault)

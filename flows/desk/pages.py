@@ -1,4 +1,4 @@
-"""The desk's pages that only show: list, case, player, drawings, files. Nothing here changes anything."""
+"""The desk's read-only pages: list, case, player, drawings, files."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from urllib.parse import quote
 from fastapi import APIRouter, Request
 from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
 
-from flows.desk.context import STATIC, Desk, Gone
+from flows.desk.context import STATIC, CaseGone, Desk
+from flows.desk.index import version_of
 from flows.desk.views import case_view, edit_form, filters
-from flows.desk.views.case_version import version_of
-from flows.desk.views.filters import Asked
+from flows.desk.views.filters import ListQuery
 from flows.desk.views.map_shapes import map_of
 from sgcad_core.errors import SgcadError
 from sgcad_core.records.edits import effective
@@ -36,7 +36,7 @@ def desk_of(request: Request) -> Desk:
 @router.get("/")
 def list_page(request: Request) -> Response:
     """The list of cases, filtered and sorted."""
-    desk, asked = desk_of(request), Asked.of(request.query_params)
+    desk, asked = desk_of(request), ListQuery.of(request.query_params)
     listing = desk.index.listing()
     everything = list(listing.rows.values())
     rows = filters.chosen(everything, asked)
@@ -52,7 +52,7 @@ def list_page(request: Request) -> Response:
 @router.get("/case/{key:path}")
 def case_page(request: Request, key: str) -> Response:
     """One case: report, drawing, map, player, facts."""
-    desk, asked = desk_of(request), Asked.of(request.query_params)
+    desk, asked = desk_of(request), ListQuery.of(request.query_params)
     row, folder = desk.case(key)
     result = desk.result(folder)
     rows = filters.chosen(desk.index.listing().rows.values(), asked)
@@ -66,7 +66,7 @@ def case_page(request: Request, key: str) -> Response:
 
 
 def mending_of(desk: Desk, page: case_view.CasePage, folder: Path) -> dict[str, Any]:
-    """What the page needs to mend a case; where that cannot be, why."""
+    """Template values for editing a case, or the reason why it cannot be edited."""
     from flows.case import revise_case
 
     nothing = {"groups": page.groups, "can_mend": False, "edits": (), "additions": (), "stamp": ""}
@@ -84,14 +84,14 @@ def mending_of(desk: Desk, page: case_view.CasePage, folder: Path) -> dict[str, 
 
 @router.get("/version/{key:path}")
 def version(request: Request, key: str) -> Response:
-    """What stands on disk now, so that an open page notices a change."""
+    """The version on disk, so that an open page notices a change."""
     _, folder = desk_of(request).case(key)
     return JSONResponse({"version": version_of(folder)})
 
 
 @router.get("/player/{key:path}")
 def player(request: Request, key: str) -> Response:
-    """The case's player, sealed off."""
+    """The case's player, in a sandbox."""
     return _file(request, key, "player.html", "text/html; charset=utf-8", {"Content-Security-Policy": PLAYER_POLICY})
 
 
@@ -101,24 +101,24 @@ def drawing(request: Request, number: int, key: str) -> Response:
     _, folder = desk_of(request).case(key)
     found = case_view.diagrams_of(folder)
     if not 1 <= number <= len(found):
-        raise Gone(f"This report has {len(found)} drawings; there is no number {number}.")
+        raise CaseGone(f"This report has {len(found)} drawings; there is no number {number}.")
     return _file(request, key, found[number - 1].name, "image/png", {})
 
 
 @router.get("/file/{name}/{key:path}")
 def download(request: Request, name: str, key: str) -> Response:
-    """One of the case's files, to keep."""
+    """One of the case's files to download."""
     if name not in case_view.FILES:
-        raise Gone(f"{name!r} is no file of a case.")
+        raise CaseGone(f"{name!r} is no file of a case.")
     case = key.rpartition("/")[2]
     return _file(request, key, name, "application/octet-stream", {}, filename=f"{case}-{name}")
 
 
 @router.get("/attempt/{attempt}/{name}/{key:path}")
 def attempt(request: Request, attempt: str, name: str, key: str) -> Response:
-    """What a writer was asked and answered, as plain text."""
+    """A writer's prompt or answer as plain text."""
     if not case_view.ATTEMPT.fullmatch(attempt) or name not in case_view.ATTEMPT_FILES:
-        raise Gone(f"{attempt}/{name} is no file of an attempt.")
+        raise CaseGone(f"{attempt}/{name} is no file of an attempt.")
     return _file(request, key, f"attempts/{attempt}/{name}", "text/plain; charset=utf-8", {})
 
 
@@ -134,16 +134,16 @@ def static(name: str) -> Response:
 def _file(
     request: Request, key: str, name: str, kind: str, headers: Mapping[str, str], filename: str | None = None
 ) -> Response:
-    """A file of a case's folder, never one that a link in it leads out to."""
+    """A file of a case's folder; links that lead out of the folder are refused."""
     desk = desk_of(request)
     _, folder = desk.case(key)
     file = folder / name
     if not file.resolve().is_relative_to(desk.root) or not file.is_file():
-        raise Gone(f"This case has no {name}.")
+        raise CaseGone(f"This case has no {name}.")
     try:
-        content = file.read_bytes()  # whole: a batch may write the case anew while its length is told already
+        content = file.read_bytes()  # read whole: a batch may replace the file after its length was sent
     except OSError as fault:
-        raise Gone(f"This case has no {name} any more ({fault.strerror}).") from fault
+        raise CaseGone(f"This case has no {name} any more ({fault.strerror}).") from fault
     kept = {"Content-Disposition": f"attachment; {_named(filename)}"} if filename else {}
     return Response(content, media_type=kind, headers={**headers, **kept})
 

@@ -1,1 +1,1 @@
-"""Written crashes handed over to drivers: `sgcad drive`, and the stage `drive` of a config."""
+"""Scripted crashes driven by drivers: `sgcad drive`, `sgcad vary`, and the stage `drive` of a config."""

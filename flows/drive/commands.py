@@ -1,8 +1,9 @@
-"""`sgcad drive`: hand finished cases over to drivers, and a table of what came of it."""
+"""`sgcad drive` and `sgcad vary`: finished cases driven by drivers, or varied into families."""
 
 from __future__ import annotations
 
 from contextlib import AbstractContextManager, nullcontext
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, TextIO
 
@@ -16,13 +17,18 @@ Drivers = Annotated[
     typer.Option("--driver", "-d", help="A name, YAML such as '{name: reference, model: fuzzy}', or @FILE: a list."),
 ]
 RoleOf = Annotated[
-    list[str] | None, typer.Option("--role-of", help="V1=responder: your word over what was read of the report.")
+    list[str] | None,
+    typer.Option("--role-of", help="ACTOR=ROLE, such as V1=responder; overrides the role read from the report."),
 ]
 Release = Annotated[
-    float, typer.Option("--release", min=0.0, max=30.0, help="Seconds before the contact; then nobody heeds the ego.")
+    float,
+    typer.Option(
+        "--release", min=0.0, max=30.0, help="Time before the contact, s, from which other actors ignore the ego."
+    ),
 ]
 Factor = Annotated[
-    float, typer.Option("--factor", min=0.2, max=3.0, help="The ego's speed at the hand-over over the scripted one.")
+    float,
+    typer.Option("--factor", min=0.2, max=3.0, help="Ratio of the ego's speed at the hand-over to the scripted speed."),
 ]
 
 
@@ -35,11 +41,14 @@ def drive(
     release: Release = 4.0,
     factor: Factor = 1.0,
     jobs: Annotated[int, typer.Option("--jobs", "-j", min=1, help="Cases at a time.")] = 1,
-    fresh: Annotated[bool, typer.Option("--fresh", help="Drive again what was driven.")] = False,
-    csv: Annotated[Path | None, typer.Option("--csv", help="Write one line a drive here.")] = None,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Repeat finished drives.")] = False,
+    csv: Annotated[Path | None, typer.Option("--csv", help="Write one line per drive to this file.")] = None,
     pages: Annotated[bool, typer.Option("--pages/--no-pages", help="Write drive.html beside drive.json.")] = True,
 ) -> None:
-    """Put a driver into crashes: avoided, mitigated, unchanged, worse or lost; files go to drive/ in each case."""
+    """Let drivers drive one actor of finished crashes: avoided, mitigated, unchanged, worse or lost.
+
+    Files are written to drive/ in each case's folder.
+    """
     from rich.console import Console
 
     from flows.drive import table
@@ -67,7 +76,7 @@ def _opened(file: Path | None) -> AbstractContextManager[TextIO | None]:
 
 
 def _entries(text: str) -> list[Any]:
-    """Drivers of one --driver: one, or with @FILE all of a YAML list."""
+    """Drivers of one --driver option: one, or with @FILE those of a YAML list."""
     if not text.startswith("@"):
         return [_yaml(text)]
     try:
@@ -75,7 +84,7 @@ def _entries(text: str) -> list[Any]:
     except OSError as fault:
         raise ConfigError(f"--driver {text}: cannot be read ({fault.strerror}); give a YAML file") from fault
     if not isinstance(listed, list) or not listed:
-        raise ConfigError(f"--driver {text}: no list of drivers; write one driver a line, each behind a dash")
+        raise ConfigError(f"--driver {text}: no list of drivers; write one driver per line, each after a dash")
     return listed
 
 
@@ -108,16 +117,19 @@ def vary(
     cases: Cases,
     count: Annotated[int, typer.Option("-n", "--count", min=1, max=10_000, help="Members of each family.")] = 200,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Equal seeds give equal families.")] = 1,
-    driver: Annotated[str, typer.Option("--driver", "-d", help="Look for the hardest ones for this driver.")] = "",
-    role: Annotated[str, typer.Option("--role", help="Whom it drives.")] = "responder",
+    driver: Annotated[str, typer.Option("--driver", "-d", help="Search the hardest members for this driver.")] = "",
+    role: Annotated[str, typer.Option("--role", help="Role of the actor that it drives.")] = "responder",
     search: Annotated[
-        str, typer.Option("--search", help="cross-entropy: the hardest corner; map-elites: the hardest in every way.")
+        str,
+        typer.Option(
+            "--search", help="cross-entropy: one hardest region; map-elites: the hardest member of each kind."
+        ),
     ] = "cross-entropy",
     role_of: RoleOf = None,
 ) -> None:
-    """Vary what a report leaves open: a family of the same crash, as scenario files, in vary/ of each case."""
-    from flows.drive.families import METHODS, Search, family_of
-    from flows.drive.families import vary as write
+    """Vary what a report leaves open: a family of the same crash as scenario files, in vary/ of each case's folder."""
+    from flows.drive.families import family_of, write_family
+    from flows.drive.hardest_search import METHODS, Search, hardest
     from flows.drive.script_of_case import case_folders
     from sgcad_core.config import driver_entry
 
@@ -130,5 +142,6 @@ def vary(
         raise ConfigError(f"--search {search}: no such search; there are {', '.join(METHODS)}")
     look = Search(entry, roles[0], method) if entry else None
     for folder in case_folders(cases):
-        place = write(family_of(folder, _given(role_of or [])), count, seed, look)
+        family = family_of(folder, _given(role_of or []))
+        place = write_family(family, count, seed, partial(hardest, family, count, seed, look) if look else None)
         typer.echo(str(place))

@@ -1,4 +1,4 @@
-"""The stage `drive` of a config: an executed case handed over in memory. Knows records and the config."""
+"""The stage `drive` of a config: drivers drive an executed case in memory."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def driven(stage: DriveStage, record: CaseRecord, folder: Path) -> dict[str, Any
 
 
 def contact(record: CaseRecord) -> dict[str, Any]:
-    """How hard the scripted contact is, and until when it could have been avoided."""
+    """Figures of the scripted contact: its severity, and the last moments to avoid it."""
     return contact_figures(script_in(record, {}), record.execution.contact if record.execution else None)
 
 
 def impact(record: CaseRecord) -> dict[str, Any] | None:
-    """What result.json tells of the scripted contact; None where nothing touches."""
+    """Entry of result.json on the scripted contact; None without contact."""
     return impact_summary(script_in(record, {}), record.execution.contact if record.execution else None)
 
 

@@ -12,17 +12,16 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from flows.case import case_folder
+from flows.case_files import case_folder
 from flows.drive.script_of_case import SURFACES, script_of
 from sgcad_core.case.records import Floats
-from sgcad_core.config import DriverEntry
 from sgcad_core.errors import BadInput
 from sgcad_core.formats.openscenario.writing.entities import SUNS
 from sgcad_core.formats.openscenario.writing.logical import (
@@ -44,25 +43,15 @@ from sgcad_core.handover.script import Script
 from sgcad_core.records.specs import BehaviorSpec
 from sgcad_core.system import temp_folders
 
-Method = Literal["cross-entropy", "map-elites"]
-METHODS: tuple[Method, ...] = ("cross-entropy", "map-elites")
 TRIES = 40
-"""Draws a member at most: a family of which fewer are the same crash is too wide."""
+"""Maximum draws per member: a family with fewer draws that are the same crash is too wide."""
 BACK = 0.45
 """Straight run before the logical file's trajectories, of the time to the contact: the fastest pace needs 0.4."""
 
 
-class Search(NamedTuple):
-    """What is looked for: the hardest members for a driver in a role, by one of both methods."""
-
-    driver: DriverEntry
-    role: str
-    method: Method = "cross-entropy"
-
-
 @dataclass(frozen=True)
 class Family:
-    """A case ready to be varied."""
+    """A case to be varied: its basis and its parameters."""
 
     folder: Path
     basis: FamilyBasis
@@ -79,25 +68,25 @@ def family_of(folder: Path, role_of: Mapping[str, str] | None = None) -> Family:
     script = script_of(folder, role_of)
     basis = basis_of(script)
     if basis is None:
-        raise BadInput(f"{folder}: its first contact is not the declared one, or of no vehicle; nothing to vary about")
+        raise BadInput(
+            f"{folder}: its first contact is not the declared one, or has no vehicle, so it cannot be varied"
+        )
     facts = tuple(json.loads((folder / "result.json").read_text(encoding="utf-8")).get("facts", ()))
     return Family(folder, basis, open_parameters(script, facts, basis.delays), facts)
 
 
-def vary(family: Family, count: int, seed: int, look: Search | None = None) -> Path:
-    """Write a family of so many members, and with a search the hardest ones for a driver; the folder.
+def write_family(family: Family, count: int, seed: int, add: Callable[[Path], None] | None = None) -> Path:
+    """Write a family of `count` members whole or not at all; its folder. `add` writes further files into it.
 
-    Raises BadInput, ConfigError, SimulationFailed.
+    Raises BadInput, and what `add` raises.
     """
     place = family.folder / "vary" / f"seed-{seed}"
     place.parent.mkdir(parents=True, exist_ok=True)
     with temp_folders.folder_beside(place) as partial:
         partial.chmod(0o755)
         _write(family, count, seed, partial)
-        if look is not None:
-            from flows.drive.hardest_search import hardest  # the family's functions are known there
-
-            hardest(family, count, seed, look, partial)
+        if add:
+            add(partial)
         shutil.rmtree(place, ignore_errors=True)
         partial.rename(place)
     return place
@@ -105,7 +94,7 @@ def vary(family: Family, count: int, seed: int, look: Search | None = None) -> P
 
 # ------------------------------------------------------------------ members
 def members(family: Family, count: int, seed: int) -> tuple[list[tuple[dict[str, float], Script]], int]:
-    """So many members with their values, and how many draws that took. Raises BadInput where too few are the same."""
+    """`count` members with their values, and the number of draws. Raises BadInput where too few draws are members."""
     rng = np.random.default_rng(seed)
     found: list[tuple[dict[str, float], Script]] = []
     drawn = 0
@@ -115,7 +104,9 @@ def members(family: Family, count: int, seed: int) -> tuple[list[tuple[dict[str,
         if (made := member(family.basis, values)) is not None:
             found.append((values, made))
         elif drawn > TRIES * (len(found) + 5):
-            raise BadInput(f"{family.folder}: of {drawn} draws only {len(found)} are the same crash; nothing to vary")
+            raise BadInput(
+                f"{family.folder}: of {drawn} draws only {len(found)} are the same crash; this case cannot be varied"
+            )
     return found, drawn
 
 
@@ -143,7 +134,7 @@ def files_of(family: Family, sets: Sequence[Mapping[str, float]], seed: int) -> 
 
 
 def _conditions(family: Family) -> BehaviorSpec:
-    """Light, weather and surface as read: all that a scenario file takes of a behavior."""
+    """Light, weather and surface as read: the part of a behavior that a scenario file needs."""
     told = {f["field"].split(".")[1]: f["value"] for f in family.facts if f["field"].startswith("conditions.")}
     surface = told.get("surface") if told.get("surface") in SURFACES else None
     weather, light = told.get("weather"), told.get("light")
@@ -165,12 +156,12 @@ def _logical(family: Family, ranges: Sequence[ParameterRange], behavior: Behavio
     seen = behavior.model_copy(update={"light": LIGHTS[0]}) if lit else behavior
     text = write_xosc(nominal.actors, with_earlier_start(nominal, back), seen, "../../road.xodr", "logical")
     text = with_sun_parameter(text, "light", [SUNS[light] for light in LIGHTS]) if lit else text
-    everybody = [_meets(basis, t.actor, back) for t in nominal.trajectories]
-    return logical_xosc(text, ranges, everybody, basis.contact_s)
+    motions = [_meets(basis, t.actor, back) for t in nominal.trajectories]
+    return logical_xosc(text, ranges, motions, basis.contact_s)
 
 
 def _meets(basis: FamilyBasis, actor: str, back: float) -> ParameterizedActor:
-    """How an actor's motion in the logical file depends on the parameters, as `variant` has it."""
+    """Dependence of an actor's motion in the logical file on the parameters, as in `variant`."""
     who = basis.owner(actor)
     lanes = (f"{who}_lane_m", *((f"{PAIR}_lane_m",) if who in basis.coupled else ()))
     other, per_m = basis.crossed.get(who, ("", 0.0))
@@ -184,7 +175,7 @@ def _meets(basis: FamilyBasis, actor: str, back: float) -> ParameterizedActor:
 def _manifest(
     family: Family, found: Sequence[tuple[dict[str, float], Script]], drawn: int, seed: int
 ) -> dict[str, Any]:
-    """Of every value whether it is a fact of the report, inferred, or varied."""
+    """Content of manifest.json: for every value whether it is a fact of the report, inferred, or varied."""
     script = family.basis.script
     return {
         "case": script.case, "seed": seed, "count": len(found), "drawn": drawn,

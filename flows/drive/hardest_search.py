@@ -1,8 +1,8 @@
-"""The hardest members of a family for a driver: hardest.json and decides.png. Knows families and drives.
+"""The hardest members of a family for a driver: hardest.json and decides.png.
 
-By cross-entropy the search closes in on the one hardest corner; by MAP-Elites it keeps the hardest member of every
-cell of two descriptors, how fast the pair closes and how late the driver began to brake, so that different ways of
-being hard stand beside each other. Both tell rates within the family by importance weights.
+Cross-entropy converges to the one hardest region. MAP-Elites keeps the hardest member of every cell of two descriptors,
+closing speed and time to collision at the start of braking. Both estimate rates within the family by importance
+weights.
 """
 
 from __future__ import annotations
@@ -10,14 +10,15 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from flows.case import case_folder
-from flows.drive.families import Family, Search
+from flows.case_files import case_folder
+from flows.drive.families import Family
 from flows.drive.script_of_case import egos
 from sgcad_core.case.records import Floats
+from sgcad_core.config import DriverEntry
 from sgcad_core.errors import ConfigError
 from sgcad_core.handover.drive import drive
 from sgcad_core.handover.family.cross_entropy import Searched, rank_correlations, search
@@ -27,19 +28,29 @@ from sgcad_core.handover.family.variant import member, undisturbed
 from sgcad_core.handover.outcome import DriveResult, judge_drive
 from sgcad_core.handover.script import staging_for
 
+Method = Literal["cross-entropy", "map-elites"]
+METHODS: tuple[Method, ...] = ("cross-entropy", "map-elites")
 ROUNDS = 5
 CLOSING_MPS = 2.5
 """Width of a cell in closing speed."""
 TTC_S = (0.5, 1.0, 1.5, 2.0, 3.0)
-"""Between cells of the time to collision at which braking began; who never braked has a cell of its own."""
+"""Between cells of the time to collision at which braking began; a drive without braking has a cell of its own."""
 TOLD = 10
 
 
+class Search(NamedTuple):
+    """A search for the hardest members for a driver in a role, by one of the two methods."""
+
+    driver: DriverEntry
+    role: str
+    method: Method = "cross-entropy"
+
+
 def hardest(family: Family, count: int, seed: int, look: Search, place: Path) -> None:
-    """Search, and write what was found. Raises ConfigError where nobody has the role, SimulationFailed."""
+    """Search, and write the result. Raises ConfigError where no actor has the role, SimulationFailed."""
     wanted = egos(family.basis.script, "", [look.role])
     if not wanted:
-        raise ConfigError(f"{family.folder}: nobody who can be driven is its {look.role}; give --role")
+        raise ConfigError(f"{family.folder}: no actor that can be driven has the role {look.role}; give another --role")
     ego, seen = wanted[0][0], list[DriveResult | None]()
     drives = _driven(family, look, ego, seen)
     dimensions, told = len(family.parameters), {}
@@ -66,7 +77,7 @@ def hardest(family: Family, count: int, seed: int, look: Search, place: Path) ->
 def _driven(
     family: Family, look: Search, ego: str, seen: list[DriveResult | None]
 ) -> Callable[[Floats], DriveResult | None]:
-    """What a driver makes of a sample; None: no member, or lost. All of them are kept in `seen`."""
+    """A function that drives a sample; None: no member of the family, or lost. Every result is kept in `seen`."""
 
     def driven(latent: Floats) -> DriveResult | None:
         values = family.values(latent)
@@ -80,7 +91,7 @@ def _driven(
 
 
 def _hardness(result: DriveResult | None) -> float | None:
-    """The larger delta-v where the ego touches, else minus its least clearance; None: nothing to judge."""
+    """The larger delta-v where the ego touches, else minus its least clearance; None without a result."""
     if result is None:
         return None
     return result.severity.worst_delta_v_mps if result.severity else -result.closest_m

@@ -1,4 +1,4 @@
-"""drive.html: the script and the drive in one player, one over the other. Knows the player's data, no driver."""
+"""drive.html: the script and the drive in one player, one over the other."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from sgcad_core.handover.drive import Drive
 from sgcad_core.result import CaseRecord
 
 SCRIPT = "script"
-"""What the script is called among the player's runs."""
+"""Name of the script among the player's runs."""
 
 
 def page(driven: Drive, told: Mapping[str, Any]) -> str:
-    """The page as text: the drive, and over it in dashes the script; both beside each other at a click."""
+    """The page as text: the drive, and over it in dashes the script."""
     infos = {a.id: a for a in driven.staging.script.actors}
     movers = (
         Mover(infos[t.actor], t, COLORS[k % len(COLORS)]) for k, t in enumerate(driven.trajectories) if t.actor in infos

@@ -1,8 +1,8 @@
-"""One script, one ego, one driver: the drive and its files. A drive that is there already is not driven again.
+"""One script, one ego, one driver: the drive and its files. A finished drive is not repeated.
 
     drive/<driver>/<ego>/   drive.json, trajectories.csv, drive.html
 
-Nothing that the script's case left is touched.
+The other files of the case stay as they are.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
 
-from flows.batch.find_cases import code_digest
-from flows.case import case_folder
+from flows.case_files import case_folder
+from flows.case_files.find_cases import code_digest
 from flows.drive.script_of_case import egos, script_of
 from sgcad_core.config import DriverEntry
 from sgcad_core.errors import SgcadError
@@ -33,7 +33,7 @@ FOLDER = "drive"
 
 @dataclass(frozen=True)
 class Order:
-    """What is to be driven of every case."""
+    """The drivers, egos and options to apply to every case."""
 
     drivers: tuple[DriverEntry, ...]
     ego: str = ""
@@ -46,39 +46,39 @@ class Order:
 
 
 def drive_folder(folder: Path, order: Order) -> list[dict[str, Any]]:
-    """Drive a finished case as ordered; the contents of its drive.json files. Raises BadInput, ConfigError."""
+    """Run a finished case's drives; the contents of their drive.json files. Raises BadInput, ConfigError."""
     script = script_of(folder, order.role_of)
     told = (folder / "trajectories.csv").read_bytes() + (folder / "road.net.xml").read_bytes()
     return drive_script(script, order, folder / FOLDER, hashlib.sha256(told).hexdigest())
 
 
 def drive_script(script: Script, order: Order, place: Path, content: str = "") -> list[dict[str, Any]]:
-    """Drive a script as ordered. `content`: digest of what the script is made of; "": nothing is reused."""
+    """Run a script's drives. `content`: digest of the script's files; "": finished drives are not reused."""
     found = []
     for ego, role in egos(script, order.ego, order.roles):
-        told: _Told | None = None
+        told: _StagedEgo | None = None
         for entry in order.drivers:
             target = place / entry.label / ego
             digest = _digest(content, entry, order, ego, role)
             done = _done(target, digest) if content and not order.fresh else None
             if done is None and told is None:
-                told = _Told.of(script, ego)
-            found.append(done or _one(cast("_Told", told), order, entry, role, target, digest))
+                told = _StagedEgo.of(script, ego)
+            found.append(done or _drive_one(cast("_StagedEgo", told), order, entry, role, target, digest))
     return found
 
 
 @dataclass(frozen=True, eq=False)
-class _Told:
-    """An ego's staging with what could have been done: the same for all drivers."""
+class _StagedEgo:
+    """An ego's staging and its last moments to avoid the contact: the same for all drivers."""
 
     staging: Staging
     avoidance: dict[str, Any] | None
 
     @staticmethod
-    def of(script: Script, ego: str) -> _Told:
+    def of(script: Script, ego: str) -> _StagedEgo:
         staging = staging_for(script, ego)
         could = avoidance(staging)
-        return _Told(staging, could.model_dump(mode="json") if could else None)
+        return _StagedEgo(staging, could.model_dump(mode="json") if could else None)
 
 
 def _digest(content: str, entry: DriverEntry, order: Order, ego: str, role: str) -> str:
@@ -87,14 +87,13 @@ def _digest(content: str, entry: DriverEntry, order: Order, ego: str, role: str)
 
 
 def _done(target: Path, digest: str) -> dict[str, Any] | None:
-    try:
-        told = json.loads((target / "drive.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return told if isinstance(told, dict) and told.get("digest") == digest else None
+    told = case_folder.read_json(target / "drive.json")
+    return told if told.get("digest") == digest else None
 
 
-def _one(told: _Told, order: Order, entry: DriverEntry, role: str, target: Path, digest: str) -> dict[str, Any]:
+def _drive_one(
+    told: _StagedEgo, order: Order, entry: DriverEntry, role: str, target: Path, digest: str
+) -> dict[str, Any]:
     started, staging = time.perf_counter(), told.staging
     about: dict[str, Any] = {
         "case": staging.script.case, "driver": entry.label, "fields": entry.raw, "ego": staging.ego, "role": role,
@@ -107,11 +106,11 @@ def _one(told: _Told, order: Order, entry: DriverEntry, role: str, target: Path,
         return about | {"outcome": "failed", "reason": str(fault)}
     about |= judge_drive(driven).model_dump(mode="json") | {"avoidance": told.avoidance}
     about |= {"seconds": round(time.perf_counter() - started, 4)}
-    _leave(driven, about | {"series": time_series(driven)}, target, order)
+    _write_drive(driven, about | {"series": time_series(driven)}, target, order)
     return about
 
 
-def _leave(driven: Drive, told: Mapping[str, Any], target: Path, order: Order) -> None:
+def _write_drive(driven: Drive, told: Mapping[str, Any], target: Path, order: Order) -> None:
     """The drive's files, whole or not at all."""
     target.parent.mkdir(parents=True, exist_ok=True)
     with temp_folders.folder_beside(target) as partial:
@@ -129,7 +128,7 @@ def _leave(driven: Drive, told: Mapping[str, Any], target: Path, order: Order) -
 def drive_folders(folders: Sequence[Path], order: Order, jobs: int) -> Iterator[dict[str, Any]]:
     """Drive many cases, some at a time; results as they come, in the order of the folders, failures among them.
 
-    Nothing is kept: who wants many results counts them.
+    Results are not kept: with many cases the caller counts them.
     """
     if jobs <= 1 or len(folders) == 1:
         for folder in folders:

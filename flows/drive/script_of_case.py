@@ -1,4 +1,4 @@
-"""A finished case's folder as a script that can be handed over. Reads files only; believes them."""
+"""A finished case's folder as a script for drivers. Reads files and does not check them again."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from flows.case import case_folder
+from flows.case_files import case_folder
 from sgcad_core.case.records import ActorInfo
 from sgcad_core.errors import BadInput, ConfigError
 from sgcad_core.formats.sumo.net_xml import parse_net
@@ -20,7 +20,7 @@ SURFACES: tuple[Surface, ...] = ("dry", "wet", "snow", "ice")
 
 
 def case_folders(places: Iterable[Path]) -> list[Path]:
-    """Folders of executed cases: the places themselves or any below them. Raises BadInput where there is none."""
+    """Folders of executed cases: the places themselves or folders below them. Raises BadInput where there is none."""
     found: dict[Path, None] = {}
     for place in places:
         executed = [f for f in _below(place) if all((f / name).is_file() for name in NEEDED)]
@@ -61,7 +61,7 @@ def script_of(folder: Path, role_of: Mapping[str, str] | None = None) -> Script:
 
 
 def roles_of(facts: Iterable[Mapping[str, Any]], given: Mapping[str, str]) -> dict[str, str]:
-    """Role by actor: as read, changed by a person. Raises ConfigError for a word that is no role."""
+    """Role by actor: those given, else those read. Raises ConfigError for a word that is no role."""
     wrong = [f"{name}={role}" for name, role in given.items() if role not in CRASH_ROLES]
     if wrong:
         raise ConfigError(f"role {wrong[0]}: no such role; roles: {', '.join(CRASH_ROLES)}")

@@ -1,4 +1,4 @@
-"""Outcomes counted: a row a driver and role, shares with Wilson's interval. Knows the contents of drive.json."""
+"""Outcomes counted: one row per driver and role, shares with Wilson's interval. Reads contents of drive.json."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MAX_TOLD = 10
 
 
 class Tally:
-    """Drives counted one by one; none of them is kept but the first that failed."""
+    """Counts of drives; of the drives only the first failed ones are kept."""
 
     def __init__(self) -> None:
         self._counts: dict[tuple[str, str], Counter[str]] = {}
@@ -40,7 +40,7 @@ class Tally:
             counts.update({"declared": 1, "as_declared": int(told["as_declared"])})
 
     def rows(self) -> list[dict[str, Any]]:
-        """One a driver and role: n, counts of the outcomes, shares with intervals, as declared; without failed ones."""
+        """Rows by driver and role: n, counts of outcomes, shares with intervals, as declared; without failed drives."""
         drivers = dict.fromkeys(driver for driver, _ in self._counts)
         cells = ((d, role) for d in drivers for role in CRASH_ROLES if (d, role) in self._counts)
         return [_row(*cell, self._counts[cell]) for cell in cells]
@@ -55,7 +55,7 @@ def rows(told: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 
 def show(console: Console, tally: Tally) -> None:
-    """Print the table and what failed."""
+    """Print the table and the failed drives."""
     console.width = max(console.width, WIDTH)
     console.print(_table(tally.rows()))
     for line in tally.faults:
@@ -99,7 +99,7 @@ HARDNESS = ("delta_v_mps", "scripted_delta_v_mps", "risk", "scripted_risk")
 
 
 def as_csv(out: TextIO, told: Iterable[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
-    """Write one line a drive as they pass by: what a figure in the table counts."""
+    """Write one line per drive while the drives pass through."""
     writer = csv.writer(out)
     writer.writerow([*NAMES, *HARDNESS])
     for t in told:

@@ -1,4 +1,4 @@
-"""picture.png: the network with everyone's path over time, for MLflow and for papers. Knows matplotlib."""
+"""picture.png: the network with all paths over time, for MLflow and for papers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SIZE_IN = 6.4
 DPI = 110
 MARGIN_M = 14.0
 GHOST_S = 1.0
-"""An actor's box is drawn once every so many seconds, paler the earlier."""
+"""Time between two drawn boxes of an actor; earlier ones are paler."""
 CONE = "#ff7a1a"
 GROUND, ASPHALT, WHITE, YELLOW, RED = "#eef0ea", "#5b6067", "#f4f4f0", "#e8b93c", "#d7263d"
 LINES = {
@@ -34,7 +34,7 @@ _pen = threading.Lock()  # matplotlib's font cache is not made for threads
 
 
 def png(view: View) -> bytes:
-    """The picture, about 700 px square."""
+    """The picture as PNG, about 700 px square."""
     with _pen:
         return _draw(view)
 
@@ -92,7 +92,7 @@ def draw_network(axes: Axes, drawing: Drawing, points_per_m: float) -> None:
 
 
 def draw_path(axes: Axes, mover: Mover) -> None:
-    """A way driven and where its driver was each second, the later the stronger."""
+    """Draw an actor's path and its box every second, the later the stronger."""
     from matplotlib.collections import PolyCollection
 
     track, color = mover.track, mover.color
@@ -118,7 +118,7 @@ def _contact(axes: Axes, view: View) -> None:
 
 
 def _legend(axes: Axes, view: View) -> None:
-    """Case, what touched what and when, a scale bar, north up."""
+    """Draw the case's name, the contact and its time, and a scale bar."""
     observed = view.result["collision"]["observed"]
     text = view.record.case
     if observed:

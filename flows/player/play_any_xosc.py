@@ -1,7 +1,7 @@
-"""`sgcad play`: any scenario file in our player, as a table of motion, a page, contacts and metrics.
+"""`sgcad play`: any scenario file played, as a table of motion, a page, contacts and metrics.
 
-Knows the player's files and the page; no report, no config. What is played otherwise than the file may mean it stands
-in played.json and in the page; what the player lacks ends with an error that names the element and its line.
+Deviations from the file are noted in played.json and in the page; an unsupported element is an error that names the
+element and its line.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from flows.case import case_folder
+from flows.case_files import case_folder
 from flows.player import player_page
 from flows.player.player_data import COLORS, Mover, View
 from flows.player.road_shapes import Drawing, Strip
@@ -29,7 +29,7 @@ from sgcad_core.metrics import measure
 from sgcad_core.result import CaseRecord
 
 BESIDE_M = 60.0
-"""The map is drawn as far as this around where entities go."""
+"""Margin of the drawn map around the paths of the entities."""
 
 
 def play(file: Path, out: Path, given: Sequence[str], maps: Sequence[Path], most: int, until_s: float) -> list[Path]:
@@ -70,7 +70,7 @@ def _one(variation: Variation, folder: Path, maps: Sequence[Path], until_s: floa
 
 
 def _contacts(played: Played, sizes: Mapping[str, tuple[float, float]]) -> list[ObservedContact]:
-    """First contact of every pair that touches while both are there, in order of time; not of what is hitched on."""
+    """First contact of every pair while both are present, in order of time; without hitched trailers."""
     found = []
     for a, b in combinations(played.trajectories, 2):
         first, second = played.bodies[a.actor], played.bodies[b.actor]

@@ -1,7 +1,4 @@
-"""What a case looks like: everything that the player and the picture show, in plain values.
-
-Knows records and the network drawing; no HTML, no matplotlib.
-"""
+"""The data of a case that the player and the picture show, as plain values; no HTML and no matplotlib."""
 
 from __future__ import annotations
 
@@ -49,9 +46,9 @@ class View:
     runs: Mapping[str, Sequence[Trajectory]] = field(default_factory=dict)
     """Other runs of the same scenario, such as with drivers, by name."""
     name: str = "script"
-    """What this run is called beside another one."""
+    """Name of this run beside another one."""
     over: str = ""
-    """The other run that is shown over this one from the start."""
+    """Name of the run that is shown over this one at the start."""
 
     @staticmethod
     def of(
@@ -61,10 +58,10 @@ class View:
         result: Mapping[str, Any],
         runs: Mapping[str, Sequence[Trajectory]] | None = None,
     ) -> View:
-        """Gather what is shown. Raises InvalidOutput where the network cannot be read."""
+        """Collect a case's data. Raises InvalidOutput where the network cannot be read."""
         network, scenario, execution = record.network, record.scenario, record.execution
         if not (network and network.net_xml and scenario and execution):
-            raise ValueError(f"case {record.case}: nothing was executed, so there is nothing to show")
+            raise ValueError(f"case {record.case}: it was not executed, so there is nothing to show")
         infos = {actor.id: actor for actor in scenario.actors}
         movers = tuple(
             Mover(infos[track.actor], track, COLORS[k % len(COLORS)])
@@ -83,7 +80,7 @@ class View:
         return float(middle[0]), float(middle[1])
 
     def pair(self) -> tuple[Mover, Mover] | None:
-        """The two that touch, come near each other, or are declared to touch."""
+        """The two actors of the contact, the near crash or the declared contact."""
         near = (self.result.get("near_crash") or {}).get("observed")
         collision = self.result["collision"]
         told = collision["observed"] or near or collision["declared"] or {}
@@ -92,9 +89,9 @@ class View:
         return (found[0], found[1]) if len(found) == 2 else None
 
     def _nearness(self, run: Sequence[Trajectory] = ()) -> dict[str, Any] | None:
-        """Of the pair, over time: metres between the outlines, and seconds until they touch at constant velocity.
+        """Distance of the pair's outlines, m, and time to collision at constant velocity, s, over time.
 
-        `run`: how it is in another run; None where one of both has no motion there.
+        `run`: of another run; None where one of the two has no motion there.
         """
         pair = self.pair()
         if pair is not None and run:
@@ -121,7 +118,7 @@ class View:
         return Box(*pose, mover.info.length_m, mover.info.width_m)
 
     def as_json(self) -> dict[str, Any]:
-        """What the page's script reads; centimetres and milliradians are kept, no more."""
+        """The data for the page's script, rounded to centimeters and milliradians."""
         contact = dict(self.result["collision"]["observed"] or {})
         if point := self.contact_point():
             contact |= {"x": round(point[0], 2), "y": round(point[1], 2)}

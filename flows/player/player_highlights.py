@@ -1,4 +1,4 @@
-"""What lights up with what in the player: things (vehicles, roads, the contact) and the sentences that tell of them."""
+"""Links between things in the player (vehicles, roads, the contact) and the sentences that tell of them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Row = Mapping[str, Any]
 
 
 def thing_of(field: str) -> str:
-    """What a fact is about: "V1", "road main", "contact", or "" for conditions, junctions and roads as drawn."""
+    """The thing of a fact: "V1", "road main", "contact", or "" for conditions, junctions and roads as drawn."""
     kind, _, rest = field.partition(".")
     name = rest.split(".")[0]
     if kind in ("vehicles", "others"):

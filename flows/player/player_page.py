@@ -1,7 +1,7 @@
 """player.html: one executed case in a single page that needs no network and no server.
 
-The page's parts lie beside this module (player.html, player.css, and SCRIPTS); this module puts them and the
-case's data together. The data stand in a JSON block, never in markup, so a narrative cannot become code.
+Put together from player.html, player.css, the SCRIPTS and the case's data. The data are in a JSON block, never in
+markup, so a narrative cannot become code.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""A road network as things to draw: asphalt, lane lines, stop lines. Shared by the player and the picture.
+"""Shapes of a road network to draw: asphalt, lane lines, stop lines; for the player and the picture.
 
-Knows SUMO's .net.xml; metres, x east, y north; nothing of pixels or colors but the lines' names.
+Read from SUMO's .net.xml; meters, x east, y north; no pixels and no colors.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Drawing:
-    """Everything painted, from the ground up, and what stands beside it; `crossings` are walked along."""
+    """All shapes from the ground up, and signs; `crossings` are crosswalks."""
 
     areas: tuple[Floats, ...]
     strips: tuple[Strip, ...]
@@ -71,7 +71,7 @@ class Drawing:
 
 
 def drawing_of(net_xml: str) -> Drawing:
-    """What to draw of a network. Raises InvalidOutput where it cannot be read."""
+    """The shapes of a network. Raises InvalidOutput where it cannot be read."""
     graph, root = parse_net(net_xml), parse_xml(net_xml, "net_xml")
     strips = [Strip(ln.shape, ln.width_m, ln.allows_cars) for e in graph.edges.values() for ln in e.lanes]
     strips += [Strip(c.via_shape, _width(graph, c.from_edge, c.from_lane), True) for c in graph.connections]
@@ -108,7 +108,7 @@ def _edge_lines(edge: Edge, graph: LaneGraph) -> list[Line]:
 
 
 def _side(lane: Lane, side: int) -> Floats:
-    """The lane's left (+1) or right (-1) border, drawn a hand's breadth inside of it."""
+    """The lane's left (+1) or right (-1) border, drawn 0.12 m inside of it."""
     return offset_polyline(lane.shape, side * (lane.width_m / 2 - 0.12))
 
 
@@ -127,7 +127,7 @@ def _stop_lines(root: Any, graph: LaneGraph) -> list[Line]:
 
 
 def _across(lane: Lane) -> Floats:
-    """A line across the lane, half a metre before its end."""
+    """A line across the lane, 0.5 m before its end."""
     end, before = lane.shape[-1], lane.shape[-2]
     along = (end - before) / max(float(np.hypot(*(end - before))), 1e-9)
     half = np.array([-along[1], along[0]]) * (lane.width_m / 2 - 0.2)
@@ -137,9 +137,9 @@ def _across(lane: Lane) -> Floats:
 
 # ------------------------------------------------------------------ signs, arrows, crosswalks
 ARROW_M, ARROW_LANES = 7.0, 2
-"""An arrow lies so far before the end of its lane, where a road has so many lanes for cars one way."""
+"""Distance of an arrow from the end of its lane, and the number of car lanes one way from which arrows are drawn."""
 BESIDE_M = 1.2
-"""A sign stands so far to the right of the outermost lane."""
+"""Distance of a sign to the right of the outermost lane."""
 STOPPED = set("sw")
 """SUMO's states of connections behind a stop sign: one way, all ways."""
 

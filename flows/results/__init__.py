@@ -1,1 +1,1 @@
-"""Finished runs made readable: tables, figures and one HTML page, from study.json and the case folders alone."""
+"""Tables, figures and one HTML page of finished runs, from study.json and the case folders."""

@@ -1,5 +1,7 @@
-"""How far an arm's motion lies from the reference arm's. No trajectory of a real crash is known, so this is between
-arms: networks have frames of their own, therefore two runs are laid over each other at V1's pose at first contact."""
+"""Displacement of an arm's motion from the reference arm's, since trajectories of real crashes are unknown.
+
+Networks have different frames, so two runs are aligned at V1's pose at the first contact.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flows.results.reading import Ran, Study, paths_of
+from flows.results.reading import FinishedCase, Study, paths_of
 from sgcad_core.case.records import Floats
 from sgcad_core.metrics.displacement import average_displacement_error, final_displacement_error
 from sgcad_core.metrics.labels.motion_label_match import Path
@@ -17,14 +19,14 @@ BEFORE_S = 3.0
 STEP_S = 0.05
 
 
-class Apart(NamedTuple):
+class Displacement(NamedTuple):
     """Displacement of one case between two arms, mean over its common vehicles, metres."""
 
     average_m: float
     final_m: float
 
 
-def errors_against(study: Study, reference: str | None) -> dict[str, list[Apart]]:
+def displacements_from(study: Study, reference: str | None) -> dict[str, list[Displacement]]:
     """Label of each other arm -> displacement of every case that touched in both; empty without a second arm."""
     if reference is None:
         return {}
@@ -32,23 +34,23 @@ def errors_against(study: Study, reference: str | None) -> dict[str, list[Apart]
     for arm in study.arms:
         if arm.name != reference:
             pairs = ((study.ran[reference].get(case), ran) for case, ran in study.ran[arm.name].items())
-            errors = [e for first, second in pairs if first and (e := apart(first, second))]
+            errors = [e for first, second in pairs if first and (e := displacement_between(first, second))]
             if errors:
                 found[arm.label] = errors
     return found
 
 
-def why_none(study: Study) -> str:
-    """Why `errors_against` found nothing."""
+def no_displacement_reason(study: Study) -> str:
+    """Reason why `displacements_from` is empty."""
     if len(study.arms) < 2:
         return "There is one arm and no trajectory of the real crash, so nothing to hold it against."
     return "No case touched in the reference arm and another, so arms are not held against each other."
 
 
-def apart(first: Ran, second: Ran) -> Apart | None:
-    """Displacement of the second run from the first over the 3 s before contact; None where one never touched.
+def displacement_between(first: FinishedCase, second: FinishedCase) -> Displacement | None:
+    """Displacement of the second run from the first over the 3 s before contact; None without contact in one.
 
-    The far end, 3 s before contact (or as early as both run), is the final one.
+    The final displacement is that 3 s before contact, or at the earliest common instant.
     """
     tracks = [_before_contact(ran) for ran in (first, second)]
     if tracks[0] is None or tracks[1] is None:
@@ -59,10 +61,10 @@ def apart(first: Ran, second: Ran) -> Apart | None:
     if not pairs:
         return None
     average = float(np.mean([average_displacement_error(a, b) for a, b in pairs]))
-    return Apart(average, float(np.mean([final_displacement_error(a, b) for a, b in pairs])))
+    return Displacement(average, float(np.mean([final_displacement_error(a, b) for a, b in pairs])))
 
 
-def _before_contact(ran: Ran) -> Mapping[str, Floats] | None:
+def _before_contact(ran: FinishedCase) -> Mapping[str, Floats] | None:
     """actor -> (n, 2) places from contact backwards, in the frame of V1's pose at contact."""
     observed = (ran.result.get("collision") or {}).get("observed")
     paths = {a: p for a, p in paths_of(ran.folder, ran.result).items() if a.startswith("V")} if ran.generated else {}

@@ -1,6 +1,6 @@
-"""`sgcad score`: the runs of one config against what is true of their cases, field by field.
+"""`sgcad score`: the runs of one config compared with the truth of their cases, field by field.
 
-Reads run folders, label files (docs/metrics.md) and prints a table. Trusts no figure that a run reports about itself.
+Reads run folders and label files (docs/metrics.md). Uses no figure that a run reports about itself.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from flows.case_files.case_folder import read_json
 from flows.results.reading import made_of, paths_of
 from sgcad_core.errors import BadInput, InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
@@ -20,7 +21,7 @@ from sgcad_core.metrics.labels.observed_crash import Crash
 
 
 class Scored(NamedTuple):
-    """Marks by field and case, and how far two readings of the labels agree (empty with one reading)."""
+    """Marks by field and case, and the agreement of two readings of the labels (empty with one reading)."""
 
     marks: dict[str, dict[str, list[float]]]
     agreement: list[Agreement]
@@ -60,7 +61,7 @@ def score(
     for case, raw in _files(truth, only):
         if "network" not in raw:
             raise BadInput(f"{truth}/{case}.json: no label (it lacks `network`); --labels takes those of a course")
-        result = _result(runs / case)
+        result = read_json(runs / case / "result.json")
         _add(marks, case, {"generated": [float(result.get("status") == "generated")]})
         _add(marks, case, {f: [m] for f, m in compare(raw, made_of(runs / case, result)).items()})
     told, agreement = _labels(labels, second, only)
@@ -94,24 +95,15 @@ def _files(folder: Path | None, only: str) -> Iterator[tuple[str, dict[str, Any]
         try:
             raw = json.loads(file.read_text(encoding="utf-8"))
         except (OSError, ValueError) as fault:
-            raise BadInput(f"{file}: cannot be read ({fault}); mend it or take it out") from fault
+            raise BadInput(f"{file}: cannot be read ({fault}); correct or remove it") from fault
         if not isinstance(raw, dict):
-            raise BadInput(f"{file}: {type(raw).__name__} instead of a JSON object; mend it or take it out")
+            raise BadInput(f"{file}: {type(raw).__name__} instead of a JSON object; correct or remove it")
         yield file.stem, raw
 
 
-def _result(folder: Path) -> dict[str, Any]:
-    """A case's result; empty where it left none."""
-    try:
-        found = json.loads((folder / "result.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return found if isinstance(found, dict) else {}
-
-
 def _crash(folder: Path) -> Crash | None:
-    """What a generated case left; None if nothing, or nothing readable."""
-    result = _result(folder)
+    """The crash of a generated case; None if missing or unreadable."""
+    result = read_json(folder / "result.json")
     try:
         if result.get("status") != "generated":
             return None

@@ -1,4 +1,4 @@
-"""Which tables there are: the published layouts turned so that arms are rows, each with its reading in the header."""
+"""The tables: layouts of the publication with arms as rows, each with its reading in the header."""
 
 from __future__ import annotations
 
@@ -56,10 +56,10 @@ LAYOUTS = (
         "cases; TTC and PET of the cases that have one. Not comparable with published values.", m.EXACT,
     ),
     Layout(
-        "conflict", "What tells the scripted crashes apart", "Of generated cases that touch, in the script, nobody "
-        "reacting. TTC-1s, DRAC-1s: a second before the contact; exposed: time with TTC < 1.5 s; delta-v: the larger "
-        "of both; death: risk; brake by, steer by: the last moment at which it still avoids, of whichever had to act "
-        "first. Drives by drivers stand in the tables of `sgcad drive`.",
+        "conflict", "Conflict figures of the scripted crashes", "Of generated cases with contact, in a script "
+        "without reaction. TTC-1s, DRAC-1s: 1 s before contact; exposed: time with TTC < 1.5 s; delta-v: the larger "
+        "of both; death: risk; brake by, steer by: the last moment at which it still avoids, of the actor that had to "
+        "act first. Drives by drivers stand in the tables of `sgcad drive`.",
         m.CONFLICT,
     ),
     Layout(

@@ -1,4 +1,4 @@
-"""Robustness levels: their order, what tables call them, and which of them should end in a refusal."""
+"""Robustness levels: their order, their labels, and those that should end in a refusal."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LABELS: Mapping[str, str] = {
     "total_sparsity": "Total sparsity",
 }
 SHOULD_REFUSE = frozenset({"critical_depletion", "total_sparsity"})
-"""The evidence that is left cannot carry a crash; at every other level it can."""
+"""At these levels the remaining evidence is too little for a crash."""
 
 
 def level_of(factors: Mapping[str, Any], overrides: Sequence[str]) -> str | None:
@@ -29,7 +29,7 @@ def level_of(factors: Mapping[str, Any], overrides: Sequence[str]) -> str | None
 
 
 def base_of(config: str, factors: Mapping[str, Any], overrides: Sequence[str]) -> tuple[str, ...]:
-    """What an arm is apart from its level: arms with the same base are one system at several levels."""
+    """An arm's config without its level: arms with the same base are one system at several levels."""
     varied = (f"{k}={v}" for k, v in factors.items() if k != KEY)
     rest = (o.strip() for o in overrides if o.partition("=")[0].strip() != KEY)
     return (config, *sorted({*varied, *rest}))

@@ -1,6 +1,6 @@
-"""What a table can show: each measure with its name, unit, direction and where a case's value is found.
+"""Measures of tables: name, unit, direction and key in a case's values.
 
-A case's values are one flat mapping (`values_of`); a value that does not exist for a case is absent, and n says so.
+A case's values are one flat mapping (`values_of`); values that do not exist for a case are absent and not in n.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, NamedTuple
 
-from flows.results.reading import Ran, Study, made_of
+from flows.results.reading import FinishedCase, Study, made_of
 from sgcad_core.metrics.generation import quality, written_files
 from sgcad_core.metrics.labels.label_match import NETWORK_FIELDS, compare
 from sgcad_core.result import STATUSES, as_declared, counts_of
@@ -42,7 +42,7 @@ class Measure(NamedTuple):
 
     @property
     def factor(self) -> float:
-        """What a fraction is multiplied with for print."""
+        """Factor from a fraction to the printed value."""
         return 100.0 if self.unit == "%" else 1.0
 
 
@@ -160,8 +160,8 @@ _CONFLICT = {
 }  # fmt: skip
 
 
-def values_of(ran: Ran, label: Mapping[str, Any] | None) -> dict[str, float]:
-    """Everything that is measured of a finished case, fractions and SI units."""
+def values_of(ran: FinishedCase, label: Mapping[str, Any] | None) -> dict[str, float]:
+    """All values of a finished case, as fractions and in SI units."""
     found = dict(_generation(ran))
     found |= dict(_people(ran.result.get("person") or {}))
     if label is not None:
@@ -182,7 +182,7 @@ def study_values(study: Study) -> dict[str, dict[str, dict[str, float]]]:
     }
 
 
-def _generation(ran: Ran) -> Iterator[tuple[str, float]]:
+def _generation(ran: FinishedCase) -> Iterator[tuple[str, float]]:
     yield from ((status, float(ran.result["status"] == status)) for status in STATUSES)
     seen = ran.seen()
     counts = written_files(seen)
@@ -198,14 +198,14 @@ def _generation(ran: Ran) -> Iterator[tuple[str, float]]:
 
 
 def _people(said: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
-    """Facts that people gave, and those that were read otherwise; nothing of a case that nobody looked at."""
+    """Facts that people gave, and those that were read otherwise; nothing of a case without such facts."""
     if said.get("facts"):
         yield from (("person_facts", float(said["facts"])), ("person_given", float(said["facts"])))
         yield "person_disagreed", float(said["disagreed"])
 
 
 def _truth(marks: Mapping[str, float], generated: bool) -> dict[str, float]:
-    """The comparison under the names of tables: `lanes_error`, `lanes_wrong`, and the latter of generated cases."""
+    """The comparison under the names of measures: `lanes_error`, `lanes_wrong`, and `made_lanes_wrong` if generated."""
     found = {k: v for k, v in marks.items() if not k.startswith(NETWORK_FIELDS)}
     for field, short in SHORT.items():
         if field in marks:
@@ -216,7 +216,7 @@ def _truth(marks: Mapping[str, float], generated: bool) -> dict[str, float]:
 
 
 def _conflict(figures: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
-    """What tells crashes apart; of a figure by actor the one of whoever had to act first."""
+    """Figures of the conflict; of a figure by actor that of the actor that had to act first."""
     for name, key in _CONFLICT.items():
         value = figures.get(key)
         if isinstance(value, Mapping):

@@ -1,7 +1,7 @@
-"""A study as its folder tells it: study.json, and what every finished case of every arm came to.
+"""A study read from its folder: study.json and the finished cases of every arm.
 
-A folder of ordinary runs without study.json (`sgcad evaluate --out`) reads as a study too: its configs are the arms.
-Reads files only; starts nothing, and what is unfinished is simply not there.
+A folder of runs without study.json (`sgcad evaluate --out`) counts as a study whose arms are its configs. Unfinished
+cases are left out.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from flows.case_files.case_folder import read_json
 from flows.results.levels import level_of
 from sgcad_core.case.records import Finding, Stage
 from sgcad_core.errors import ConfigError, InvalidOutput
@@ -48,7 +49,7 @@ class Arm:
 
 
 @dataclass(frozen=True)
-class Ran:
+class FinishedCase:
     """One finished case of one arm."""
 
     arm: str
@@ -71,7 +72,7 @@ class Ran:
 
 @dataclass(frozen=True)
 class Study:
-    """A study and what of it is done. `labels` are the ground truth's, by case; empty where there is none."""
+    """A study and its finished cases. `labels` are the ground truth by case; empty without truth."""
 
     folder: Path
     name: str
@@ -81,11 +82,11 @@ class Study:
     reference: str | None = None
     labels: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     about: Mapping[str, Any] = field(default_factory=dict)
-    """study.json as it stands: versions, digests, hardware."""
+    """Content of study.json: versions, digests, hardware."""
 
     @cached_property
-    def ran(self) -> Mapping[str, Mapping[str, Ran]]:
-        """arm -> case -> what it came to, of the finished cases, in the study's order."""
+    def ran(self) -> Mapping[str, Mapping[str, FinishedCase]]:
+        """arm -> case -> finished case, in the study's order."""
         return {arm.name: {ran.case: ran for ran in self._finished(arm.name)} for arm in self.arms}
 
     def arm(self, name: str) -> Arm:
@@ -96,12 +97,12 @@ class Study:
         """Finished and planned cases, all arms together."""
         return sum(map(len, self.ran.values())), len(self.arms) * len(self.cases)
 
-    def _finished(self, arm: str) -> Iterator[Ran]:
+    def _finished(self, arm: str) -> Iterator[FinishedCase]:
         for case in self.cases:
             folder = self.folder / arm / case
-            result = _json(folder / "result.json")
+            result = read_json(folder / "result.json")
             if result and "status" in result:
-                yield Ran(arm, case, folder, result, _json(folder / "metrics.json"))
+                yield FinishedCase(arm, case, folder, result, read_json(folder / "metrics.json"))
 
 
 # ------------------------------------------------------------------ the study
@@ -112,7 +113,7 @@ def find_study(given: Path, out: Path = Path("runs")) -> Path:
             return folder
     known = sorted(f.parent.name for f in (out / "studies").glob(f"*/{STUDY}"))
     there = f"studies in {out / 'studies'}: {', '.join(known)}" if known else f"there is none in {out / 'studies'}"
-    raise ConfigError(f"{given}: no study and no folder of runs; {there}; `sgcad study` makes one (--out says where)")
+    raise ConfigError(f"{given}: no study and no folder of runs; {there}; `sgcad study` makes one in --out")
 
 
 def load_study(folder: Path, truth: Path | None = None, only: str = "") -> Study:
@@ -142,14 +143,18 @@ def _about(folder: Path) -> dict[str, Any]:
         about = json.loads(file.read_text(encoding="utf-8"))
         missing = {"study", "title", "arms", "cases"} - set(about)
     except (OSError, ValueError, TypeError) as fault:
-        raise ConfigError(f"{file}: cannot be read ({fault}); run `sgcad study` again, it writes it anew") from fault
+        raise ConfigError(
+            f"{file}: cannot be read ({fault}); run `sgcad study` again, which writes the file"
+        ) from fault
     if missing:
-        raise ConfigError(f"{file}: {', '.join(sorted(missing))} missing; run `sgcad study` again, it writes it anew")
+        raise ConfigError(
+            f"{file}: {', '.join(sorted(missing))} missing; run `sgcad study` again, which writes the file"
+        )
     return dict(about)
 
 
 def _runs(folder: Path) -> dict[str, Any]:
-    """What study.json would say of a folder of ordinary runs."""
+    """Content like study.json's for a folder of runs."""
     found = defaultdict(list)
     for file in sorted(folder.glob("*/*/result.json")):
         found[file.parent.parent.name].append(file.parent.name)
@@ -168,15 +173,15 @@ def _labels(truth: Path, cases: Sequence[str]) -> Iterator[tuple[str, Mapping[st
         file = truth / f"{case}.json"
         if not file.is_file():
             continue
-        label = _json(file)
+        label = read_json(file)
         if "network" not in label:
-            raise ConfigError(f"{file}: no label (a JSON object with `network`); mend it or give another --truth")
+            raise ConfigError(f"{file}: no label (a JSON object with `network`); correct it or give another --truth")
         yield case, label
 
 
 # ------------------------------------------------------------------ one case
 def made_of(folder: Path, result: Mapping[str, Any]) -> GeneratedCase | None:
-    """What a generated case left behind, to hold against its truth; None if nothing, or nothing readable."""
+    """A generated case's roads and motion, to compare with its truth; None if missing or unreadable."""
     try:
         if result.get("status") != "generated":
             return None
@@ -209,12 +214,3 @@ def paths_of(folder: Path, result: Mapping[str, Any]) -> dict[str, Motion]:
 def _attempt(place: Path) -> AttemptRecord:
     findings = json.loads((place / "findings.json").read_text(encoding="utf-8"))
     return AttemptRecord(_STAGES[place.name.rpartition("-")[0]], tuple(Finding(**f) for f in findings))
-
-
-def _json(file: Path) -> dict[str, Any]:
-    """A JSON object; empty where the file is not there or still being written."""
-    try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return content if isinstance(content, dict) else {}

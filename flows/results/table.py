@@ -1,25 +1,35 @@
-"""Tables of a study: arms against measures, each figure with n, interval, corrected p and the published value.
+"""Tables of a study: arms by measures, each figure with n, interval, corrected p and the published value.
 
-Ours and the published figures stand in separate fields of a cell and are never mixed. Knows values by case; no file,
-no print.
+Measured and published figures are in separate fields of a cell.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from flows.results.layouts import LAYOUTS, Layout
-from flows.results.levels import LABELS
+from flows.results.levels import LABELS, SHOULD_REFUSE, base_of
 from flows.results.measures import Measure, study_values
-from flows.results.published import Published, publication
 from flows.results.reading import Arm, Study
+from flows.study.published import Published, publication
 from sgcad_core.case.records import Floats
 from sgcad_core.metrics import statistics
 from sgcad_core.metrics.statistics import Interval
 
+REFUSAL_MEASURES = (
+    Measure("refusal_precision", "refusal precision", "ratio", "%", "high", ("rightly", "refusals")),
+    Measure("refusal_recall", "refusal recall", "ratio", "%", "high", ("rightly", "due")),
+    Measure("wrongly_refused", "refused though evidence carries", "ratio", "%", "low", ("wrongly", "carried")),
+)
+REFUSAL_NOTE = (
+    "Precision: of the refused runs, those at levels that should end in a refusal "
+    f"({', '.join(sorted(SHOULD_REFUSE)).replace('_', ' ')}). Recall: of the runs at those levels, the refused ones. "
+    "Exhausted and failed runs are no refusals. Intervals draw whole cases, with all their levels."
+)
 Values = Mapping[str, Mapping[str, Mapping[str, float]]]
 """arm -> case -> measure key -> value."""
 
@@ -51,7 +61,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Table:
-    """A table whole: what it says, in which reading, and compared with whom."""
+    """One table: its figures, their reading, and the reference arm."""
 
     key: str
     title: str
@@ -67,7 +77,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Tables:
-    """All tables of a study, with the values that they and the figures stand on."""
+    """All tables of a study, with the values that tables and figures are made of."""
 
     study: Study
     values: Values
@@ -76,7 +86,7 @@ class Tables:
 
 
 def tables_of(study: Study) -> Tables:
-    """Every table that the study has something to show for; what is left out is told in the remarks."""
+    """All tables with a value; the remarks say which are left out."""
     values = study_values(study)
     made = [_table(study, values, layout) for layout in LAYOUTS]
     tables = tuple(t for t in [*made, _refusals(study, values)] if t is not None)
@@ -84,7 +94,7 @@ def tables_of(study: Study) -> Tables:
 
 
 def reference_of(study: Study) -> str | None:
-    """The arm that others are compared with: the one named, else the first; None of a single arm."""
+    """The arm that others are compared with: the named one, else the first; None with a single arm."""
     return (study.reference or study.arms[0].name) if len(study.arms) > 1 else None
 
 
@@ -181,19 +191,37 @@ def _p(
 # ------------------------------------------------------------------ refusals
 def _refusals(study: Study, values: Values) -> Table | None:
     """Refusal precision and recall of each system over its robustness levels, cases resampled whole."""
-    from flows.results.refusal import MEASURES, NOTE, systems
-
     rows = []
-    for label, arms in systems(study):
+    for label, arms in _systems(study):
         cases = {case: v for case in study.cases if (v := _refused(case, arms, values))}
-        cells = {m.name: _cell(cases, m, None, None) for m in MEASURES}
+        cells = {m.name: _cell(cases, m, None, None) for m in REFUSAL_MEASURES}
         done = sum(len(values[arm.name]) for arm in arms)
         rows.append(Row(label, label, done, len(arms) * len(study.cases), cells, {}))
-    return Table("refusals", "Refusals over all levels", NOTE, MEASURES, tuple(rows)) if rows else None
+    return Table("refusals", "Refusals over all levels", REFUSAL_NOTE, REFUSAL_MEASURES, tuple(rows)) if rows else None
 
 
 def _refused(case: str, arms: Sequence[Arm], values: Values) -> dict[str, float]:
-    from flows.results.refusal import counts
-
     seen = [(arm.level or "", values[arm.name][case]["refused"]) for arm in arms if case in values[arm.name]]
-    return counts(seen)
+    return refusal_counts(seen)
+
+
+def _systems(study: Study) -> Iterator[tuple[str, list[Arm]]]:
+    """Arms that differ only in their level, by system; systems with one level are left out."""
+    found = defaultdict(list)
+    for arm in study.arms:
+        if arm.level:
+            found[base_of(arm.config, arm.factors, arm.overrides)].append(arm)
+    for base, arms in found.items():
+        if len({arm.level for arm in arms}) > 1:
+            yield " ".join(base) or arms[0].label, arms
+
+
+def refusal_counts(refused_at: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """One case's sums over its levels, from (level, 1 if refused)."""
+    found = dict.fromkeys(("rightly", "wrongly", "refusals", "due", "carried"), 0.0)
+    for level, refused in refused_at:
+        due = level in SHOULD_REFUSE
+        found["due" if due else "carried"] += 1
+        found["refusals"] += refused
+        found["rightly" if due else "wrongly"] += refused
+    return found

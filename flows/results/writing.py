@@ -1,6 +1,6 @@
-"""Tables written out: text for a terminal, CSV with one figure a line, LaTeX with booktabs.
+"""Tables as text for a terminal, as CSV with one figure per line, and as LaTeX with booktabs.
 
-The published figures have columns of their own, labelled so, in all three. Computes nothing.
+Published figures have columns of their own in all three.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from rich.console import Console
 from rich.table import Table as Grid
 
 from flows.results.measures import Measure
-from flows.results.published import publication
 from flows.results.table import Cell, Row, Table, Tables
+from flows.study.published import publication
 from flows.terminal import escape
 
 SIGNIFICANT = 0.05
@@ -38,7 +38,7 @@ def number(value: float, measure: Measure) -> str:
 
 
 def bracket(cell: Cell, measure: Measure) -> str:
-    """[low, high], empty where there is none: resampling cases that are all alike tells nothing."""
+    """[low, high]; empty without an interval, as for cases that are all alike."""
     if cell.interval is None or cell.interval.low == cell.interval.high:
         return ""
     return f"[{number(cell.interval.low, measure)}, {number(cell.interval.high, measure)}]"
@@ -56,7 +56,7 @@ def header(measure: Measure) -> str:
 
 # ------------------------------------------------------------------ text
 def show(tables: Tables, console: Console) -> None:
-    """Print every table, its reading above it, in as many pieces as the terminal's width asks for."""
+    """Print every table with its note, split to the terminal's width."""
     console.print(f"[bold]{escape(tables.study.title)}[/]")
     for remark in tables.remarks:
         console.print(escape(remark))
@@ -71,7 +71,7 @@ def show(tables: Tables, console: Console) -> None:
 
 
 def _pieces(table: Table, width: int) -> Iterator[Sequence[Measure]]:
-    """Measures side by side as far as the width goes."""
+    """Groups of measures that fit side by side into a width."""
     left = width - max((len(row.label) for row in table.rows), default=0) - 12
     taken: list[Measure] = []
     used = 0
@@ -127,7 +127,7 @@ def as_csv(tables: Tables) -> str:
 
 
 def _no_formula(value: object) -> object:
-    """A text that a spreadsheet would compute, told apart by an apostrophe."""
+    """A text that a spreadsheet would compute, escaped by an apostrophe."""
     return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t", "\r")) else value
 
 

@@ -1,4 +1,1 @@
-"""Studies: several arms over the same cases, planned whole, with shared stages computed once.
-
-Knows configs and batches; how results are told stands in flows/results.
-"""
+"""Studies: several arms over the same cases, planned before they start, with shared stages computed once."""

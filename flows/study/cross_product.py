@@ -17,7 +17,7 @@ from typing import Any
 
 import yaml
 
-from flows.batch.find_cases import safe_id
+from flows.case_files.find_cases import safe_id
 
 
 def combinations(over: Mapping[str, Sequence[Any]]) -> Iterator[dict[str, Any]]:

@@ -12,20 +12,18 @@ from __future__ import annotations
 
 import copy
 import dataclasses
-import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from flows.batch import find_cases as case_sets
-from flows.batch.find_cases import Case
+from flows.batch import machine
 from flows.batch.plan_batch import Batch, Job, batch_over
-from flows.case import case_folder
-from flows.results.published import publication
-from flows.study import machine
+from flows.case_files import case_folder
+from flows.case_files.find_cases import Case, cases_in, config_digest, dataset_digest
 from flows.study.arm_config import config_of
+from flows.study.published import publication
 from flows.study.spec import Arm, Study, fault_lines
 from sgcad_core import settings
 from sgcad_core.config import Config, build
@@ -124,12 +122,6 @@ def folder_of(name: str, out: Path) -> Path:
     return out.resolve() / "studies" / name
 
 
-def dataset_digest(cases: Iterable[Case]) -> str:
-    """Fingerprint of a set of cases: names and every file's content, whatever their order."""
-    lines = sorted(f"{case.id} {case_sets.source_digest(case.source)}\n" for case in cases)
-    return hashlib.sha256("".join(lines).encode("utf-8", "surrogateescape")).hexdigest()
-
-
 def arms_of(study: Study, out: Path, overrides: Sequence[str] = ()) -> tuple[Config, ...]:
     """The arms' configs alone, without cases. Raises ConfigError with every fault."""
     faults = [*study.faults, *_unpublished(study)]
@@ -154,7 +146,7 @@ def _cases(study: Study, named: Sequence[Path], faults: list[str]) -> tuple[Case
         faults.append("no cases: give --cases DIR (a folder of case folders), or `cases: [DIR]` in the study")
         return ()
     try:
-        return case_sets.cases_in(folders)
+        return cases_in(folders)
     except ConfigError as fault:
         faults.append(str(fault))
         return ()
@@ -207,7 +199,7 @@ def _told_of(arm: Arm, config: Config) -> dict[str, Any]:
         "label": arm.label or arm.name,
         "config": _plain(arm.config),
         "set": list(arm.set),
-        "digest": case_sets.config_digest(config),
+        "digest": config_digest(config),
         "published": arm.published,
         "factors": dict(arm.factors),
     }

@@ -1,9 +1,9 @@
-"""Running a study, whole or some of its jobs, and telling what it cost beside its cases.
+"""A study run, whole or in part, and its cost beside its cases.
 
     cost = run(plan(study, out), on_ending)
     cost = run_jobs(made, made.jobs_named(["alpha_0/c1", "alpha_0/c2"]), on_ending)       # a part, anywhere
 
-Jobs of one arm stand together, so that what arms share is there when the next arm asks. Knows no Prefect.
+Jobs run arm by arm, so that shared stages exist when the next arm needs them.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from flows.study.plan import Plan
 
 
 def run(plan: Plan, on_ending: OnEnding, on_turn: OnTurn | None = None) -> Cost:
-    """Write study.json and do all jobs. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
+    """Write study.json and run all jobs. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
 
-    A fresh study forgets what was shared before.
+    A fresh study deletes the stages shared before.
     """
     if plan.batch.fresh and plan.batch.shelf:
         shutil.rmtree(plan.batch.shelf, ignore_errors=True)
@@ -29,13 +29,13 @@ def run(plan: Plan, on_ending: OnEnding, on_turn: OnTurn | None = None) -> Cost:
 
 
 def run_jobs(plan: Plan, jobs: Sequence[Job], on_ending: OnEnding, on_turn: OnTurn | None = None) -> Cost:
-    """Write study.json and do some of a plan's jobs, as one flow run; finished ones are not repeated."""
+    """Write study.json and run some of a plan's jobs as one flow run; finished ones are not repeated."""
     plan.write()
     return run_batch.evaluate(plan.batch, on_ending, jobs, on_turn)
 
 
 def cost_line(plan: Plan, cost: Cost) -> str:
-    """One line: how long, and what orchestration took of it (planning, Prefect, tracking)."""
+    """One line on the time of a study and the share of orchestration (planning, Prefect, tracking)."""
     if not cost.done:
         return f"all cached: {cost.elapsed_s:.1f} s"
     line = f"{cost.done} cases in {cost.elapsed_s:.0f} s"

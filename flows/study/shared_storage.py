@@ -1,14 +1,14 @@
-"""The place where the hosts of a study meet: one folder behind an fsspec address (file, s3, gs, sftp, memory ...).
+"""Shared storage of a study's hosts: one folder behind an fsspec address (file, s3, gs, sftp, memory ...).
 
     plan.json                              arms, cases, jobs and shards, written once
-    cases/<id>[/<file>]                    the reports, so that a host needs nothing but this address
+    cases/<id>[/<file>]                    the reports, so that a host needs only this address
     results/<arm>/<case>/<run>.tar.gz      one finished case, one object, written before its mark
     done/<arm>/<case>.<digest>.json        the mark: which object is the result, its SHA-256; written last
     failed/...                             marks of failed cases: ended for now, tried again by the next study
-    leases/<shard>.json                    who works on a shard; the number in it moves while the worker lives
+    leases/<shard>.json                    the worker of a shard; the number in it grows while the worker lives
 
-A case is done when its mark is there, never before. Object storage has no rename and no lock: whoever marks
-second finds the mark and takes the own object away, and should two mark in the same instant the later mark
+A case is done when its mark is there, never before. Object storage has no rename and no lock: the second
+worker finds the mark and removes its own object, and should two mark in the same instant the later mark
 stands, which names one whole object all the same. Knows no Prefect and no configuration.
 """
 
@@ -25,7 +25,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-from flows.case.case_folder import TRACKED
+from flows.case_files.case_folder import TRACKED
 from sgcad_core.errors import BadInput, MissingTool
 
 DIGEST_CHARS = 16
@@ -35,12 +35,12 @@ _T = TypeVar("_T")
 
 
 class Unreachable(MissingTool):
-    """The storage does not answer; what is finished stays finished."""
+    """The storage does not answer; finished cases stay finished."""
 
 
 @dataclass(frozen=True)
 class Mark:
-    """What stands in a mark: which object is the result of a job, and who made it."""
+    """Content of a mark: the object that is the result of a job, and its run and host."""
 
     arm: str
     case: str
@@ -53,7 +53,7 @@ class Mark:
 
     @property
     def name(self) -> str:
-        """Where the mark lies."""
+        """Address of the mark."""
         return mark_name(self.arm, self.case, self.digest, self.status == "failed")
 
 
@@ -63,7 +63,7 @@ def mark_name(arm: str, case: str, digest: str, failed: bool = False) -> str:
 
 
 @dataclass(frozen=True)
-class Share:
+class SharedFolder:
     """One study's folder on the storage. Every method raises Unreachable where the storage does not answer."""
 
     address: str
@@ -129,7 +129,7 @@ class Share:
 
     # -------------------------------------------------------------- results
     def leave(self, folder: Path, job: tuple[str, str, str], status: str, run: str) -> bool:
-        """Upload a finished case's folder, then mark it; False if another's mark stood already.
+        """Upload a finished case's folder, then mark it; False if it was marked by another run.
 
         `job` is (arm, case, digest); `run` names the attempt and becomes part of the object's name.
         """
@@ -163,7 +163,7 @@ class Share:
 
 
 def packed(folder: Path) -> bytes:
-    """A case folder as one archive, without what only its host needs to know (which tracker has it)."""
+    """A case folder as one archive, without the note of its trackers."""
     packet = io.BytesIO()
     with tarfile.open(fileobj=packet, mode="w:gz", compresslevel=1) as archive:
         for path in sorted(folder.iterdir()):

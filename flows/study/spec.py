@@ -25,7 +25,7 @@ from typing import Annotated, Any, Self
 import yaml
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
-from flows.batch.find_cases import safe_id
+from flows.case_files.find_cases import safe_id
 from flows.study import cross_product, study_base
 from sgcad_core import settings
 from sgcad_core.config_faults import unknown_name

@@ -1,10 +1,9 @@
-"""Watching the shards of a study: who has one, whose lease stands still, what has come home.
+"""The watcher of a study's shards: their runs, their leases, and the results that have arrived.
 
-Prefect leaves the run of a killed worker RUNNING for good, and a pool's limit counts it; so whoever started the
+Prefect leaves the run of a killed worker RUNNING, and a pool's limit counts it; so the process that started the
 study watches: a run without a sign of life is given up (marked crashed, which frees its place) and its shard is
-submitted again. Finished cases are found by their marks; only what was running is done again. The watcher may
-die too: started again it reads the marks and goes on. Knows runs by their ids only, no Prefect, and no clock
-but the one it is given.
+submitted again. Finished cases are found by their marks; only what was running is done again. A watcher that died
+is started again, reads the marks and continues. It knows runs by their ids only and uses the clock it is given.
 """
 
 from __future__ import annotations
@@ -14,21 +13,21 @@ from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
 from flows.study.shard_lease import lease_name
-from flows.study.shards import Work
-from flows.study.shared_storage import Mark, Share, Unreachable
+from flows.study.shards import ShardJob
+from flows.study.shared_storage import Mark, SharedFolder, Unreachable
 from sgcad_core.errors import ConfigError
 
 State = Literal["waiting", "taken", "ended"]
 PATIENCE_S = 60.0
-"""A lease that stands still for so long is lost: twelve beats, longer than a switch needs to come back."""
+"""Time after which an unchanged lease is lost: twelve beats, longer than a network switch takes to restart."""
 START_S = 180.0
 """From a worker's taking a run to its lease: a process, Prefect's import, on a busy machine."""
 FRUITLESS = 3
-"""So many runs of a shard in a row that end without a new case end the study."""
+"""Runs of a shard in a row without a new case that end the study."""
 
 
 class Pool(Protocol):
-    """Where runs are submitted."""
+    """The work pool to which runs are submitted."""
 
     def submit(self, shard: int) -> str:
         """Ask for a run of a shard; its id."""
@@ -37,12 +36,12 @@ class Pool(Protocol):
         """State of each run, with the message it ended with."""
 
     def give_up(self, run: str, reason: str) -> None:
-        """Mark a run as crashed, whatever it does."""
+        """Mark a run as crashed."""
 
 
 @dataclass
 class _Turn:
-    """A shard's latest run: since when its lease stands still, and how often the shard came to nothing."""
+    """A shard's latest run: the time of its last sign of life, and its runs in a row without a new case."""
 
     run: str
     since: float
@@ -52,12 +51,12 @@ class _Turn:
 
 
 @dataclass
-class Watch:
-    """Submits shards and keeps them going; call `step` until it says that nothing is left."""
+class ShardWatch:
+    """Submits shards and replaces lost runs; call `step` until it returns False."""
 
-    share: Share
+    share: SharedFolder
     pool: Pool
-    shards: Sequence[Sequence[Work]]
+    shards: Sequence[Sequence[ShardJob]]
     on_mark: Callable[[Mark], None]
     patience_s: float = PATIENCE_S
     start_s: float = START_S
@@ -66,7 +65,7 @@ class Watch:
     _home: set[str] = field(default_factory=set)
 
     def step(self, now: float) -> bool:
-        """Look once; False when every job has ended and is home. Raises ConfigError for a shard that never moves."""
+        """Check once; False when every job has ended and all results are here. Raises ConfigError for a stuck shard."""
         states = self.pool.states([turn.run for turn in self._turns.values()])  # before the marks: a run that ends
         ended = self.share.names("done/") | self.share.names("failed/")  # in between has its last mark among them
         self._bring_home(ended)
@@ -99,7 +98,7 @@ class Watch:
             self._submit_again(number, left, reason, now)
 
     def _moved(self, number: int, turn: _Turn) -> bool:
-        """Whether the run's lease counts on."""
+        """Whether the run's lease was renewed."""
         held = self.share.json(lease_name(number))
         if held is None or held["run"] != turn.run or held["count"] == turn.seen:
             return False
@@ -111,15 +110,17 @@ class Watch:
         fruitless = turn.fruitless + 1 if left == turn.left else 0
         if fruitless >= FRUITLESS:
             raise ConfigError(
-                f"shard {number} came to nothing {fruitless} times in a row, at last: {reason}; look at flow run "
-                f"{turn.run} and mend what it says, then start the study again"
+                f"shard {number} ended without a new case {fruitless} times in a row, at last: {reason}; look at "
+                f"flow run {turn.run} and repair the fault that it names, then start the study again"
             )
         self.again.append(f"shard {number}: {reason}")
         self._turns[number] = _Turn(self.pool.submit(number), now, left, fruitless=fruitless)
 
 
-def follow(watch: Watch, clock: Callable[[], float], wait: Callable[[], None], cut_s: float = 600.0) -> None:
-    """Step until everything is home. A storage that does not answer is waited for, `cut_s` seconds at most."""
+def watch_until_done(
+    watch: ShardWatch, clock: Callable[[], float], wait: Callable[[], None], cut_s: float = 600.0
+) -> None:
+    """Step until all results have arrived; waits at most `cut_s` seconds for a storage that does not answer."""
     fine = clock()
     while True:
         try:

@@ -7,15 +7,15 @@ import subprocess
 import pytest
 import yaml
 
-from deploy import compose
 from deploy.well import is_well
-from flows.deploy.health import POOL
+from flows.health import POOL
+from research.checks import compose_file
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 
 DEPLOY = settings.ROOT / "deploy"
 SECRETS = {"POSTGRES_PASSWORD": "p" * 24, "PREFECT_AUTH": "sgcad:" + "k" * 24, "MLFLOW_PASSWORD": "m" * 24}
-SERVICES = compose.services(SECRETS)
+SERVICES = compose_file.services(SECRETS)
 DOCKERFILE = (DEPLOY / "Dockerfile").read_text()
 
 
@@ -74,14 +74,14 @@ def test_a_service_has_a_health_check_and_starts_again(name):
 @pytest.mark.parametrize("missing", SECRETS)
 def test_without_a_secret_nothing_starts(missing):
     with pytest.raises(ConfigError, match=rf"{missing}: set {missing} in deploy/.env"):
-        compose.services({**SECRETS, missing: ""})
+        compose_file.services({**SECRETS, missing: ""})
 
 
 def test_no_secret_stands_in_the_files():
     assert {
-        name for name, value in compose.read_environment(compose.EXAMPLE).items() if name in SECRETS and value
+        name for name, value in compose_file.read_environment(compose_file.EXAMPLE).items() if name in SECRETS and value
     } == set()
-    text = compose.FILE.read_text() + DOCKERFILE
+    text = compose_file.FILE.read_text() + DOCKERFILE
     kinds = r"PASSWORD|AUTH(?!_CONFIG_PATH|_ADMIN_USERNAME)\w*|SECRET\w*|ACCESS_KEY\w*|TOKEN"
     values = re.findall(rf"(?:{kinds})\s*[:=]\s*(\S.*)", text)
     assert values
@@ -89,8 +89,8 @@ def test_no_secret_stands_in_the_files():
 
 
 def test_every_variable_is_explained_in_the_example():
-    used = set(re.findall(r"\$\{(\w+)", compose.FILE.read_text()))
-    assert used == set(re.findall(r"^(?:# )?([A-Z_]+)=", compose.EXAMPLE.read_text(), re.MULTILINE))
+    used = set(re.findall(r"\$\{(\w+)", compose_file.FILE.read_text()))
+    assert used == set(re.findall(r"^(?:# )?([A-Z_]+)=", compose_file.EXAMPLE.read_text(), re.MULTILINE))
 
 
 def test_pages_are_for_this_machine_unless_somebody_says_otherwise():
@@ -100,7 +100,7 @@ def test_pages_are_for_this_machine_unless_somebody_says_otherwise():
 
 
 def test_a_named_volume_is_declared_and_only_the_card_sets_the_workers_apart():
-    document = compose.raw()
+    document = compose_file.raw()
     named = {v.split(":")[0] for s in SERVICES.values() for v in s["volumes"] if not v.startswith(".")}
     assert named == set(document["volumes"])
     cpu, gpu = SERVICES["worker"], SERVICES["worker-gpu"]
@@ -150,17 +150,17 @@ def test_the_lock_has_every_runtime_dependency_at_the_constrained_version_with_a
     from packaging.requirements import Requirement
     from packaging.utils import canonicalize_name
 
-    from deploy import lock
+    from research.checks import write_lock
 
     project = tomllib.loads((settings.ROOT / "pyproject.toml").read_text())["project"]
-    pins = dict(line.split("==") for line in lock.CONSTRAINTS.read_text().splitlines() if "==" in line)
+    pins = dict(line.split("==") for line in write_lock.CONSTRAINTS.read_text().splitlines() if "==" in line)
     pins = {canonicalize_name(name): version for name, version in pins.items()}
     locked = {}
-    for line in lock.LOCK.read_text().splitlines():
+    for line in write_lock.LOCK.read_text().splitlines():
         if not line.startswith("#"):
             name, version, _ = re.fullmatch(r"([\w.-]+)==(\S+) --hash=sha256:([0-9a-f]{64})", line).groups()
             locked[canonicalize_name(name)] = version
-    left_out = {canonicalize_name(name) for name in lock.LEFT_OUT}
+    left_out = {canonicalize_name(name) for name in write_lock.LEFT_OUT}
     assert {name: version for name, version in pins.items() if name not in left_out} == locked
     asked = map(Requirement, [*project["dependencies"], *project["optional-dependencies"]["hosts"]])
     wanted = {canonicalize_name(r.name) for r in asked} - left_out

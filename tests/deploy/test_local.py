@@ -9,8 +9,7 @@ import pytest
 
 from deploy import local
 from deploy.services import Ports
-from flows import doctor
-from flows.deploy import health
+from flows import doctor, health
 from sgcad_core.errors import ConfigError, MissingTool
 
 
@@ -37,7 +36,7 @@ def test_a_taken_port_is_named_and_nothing_starts(tmp_path):
 def test_down_where_nothing_runs_ends_nothing(tmp_path, capsys):
     assert local.down(tmp_path) == []
     assert local.main(["status", "--out", str(tmp_path)]) == 0
-    assert "nothing was started here" in capsys.readouterr().out
+    assert "no service was started here" in capsys.readouterr().out
 
 
 def test_a_service_that_ended_is_neither_alive_nor_well(tmp_path):
@@ -45,7 +44,7 @@ def test_a_service_that_ended_is_neither_alive_nor_well(tmp_path):
     health.services_folder(tmp_path).mkdir()
     running.write(health.services_folder(tmp_path))
     assert not running.healthy()
-    with pytest.raises(doctor.Trouble, match="server not well, see log"):
+    with pytest.raises(doctor.CheckFailed, match="server not well, see log"):
         doctor.CHECKS["services"](tmp_path)
 
 

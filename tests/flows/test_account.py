@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from flows.batch.find_cases import Case
-from flows.case.chain import run_case
+from flows.case.run_case import run_case
+from flows.case_files.find_cases import Case
 from sgcad_core.config import load
 from sgcad_core.settings import ROOT
 

@@ -15,7 +15,7 @@ import pytest
 from flows import cli
 
 CODE = (
-    "from flows import cli; from flows.batch import find_cases; "
+    "from flows import cli; from flows.case_files import find_cases; "
     "find_cases._code_digest = lambda: 'as it is'; cli.main()"
 )
 SGCAD = [sys.executable, "-c", CODE]
@@ -99,6 +99,15 @@ def test_a_judge_whose_program_is_missing_starts_nothing(here, reports, config_f
     assert not out.exists()
 
 
+def test_the_module_is_the_command_line():
+    ended = subprocess.run([sys.executable, "-m", "flows.cli", "--help"], capture_output=True, text=True)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert "evaluate" in ended.stdout
+    wrong = subprocess.run([sys.executable, "-m", "flows.cli", "run", "none.txt"], capture_output=True, text=True)
+    assert wrong.returncode == 2
+    assert "no such report: none.txt" in wrong.stderr
+
+
 def test_the_version_is_told(here):
     from importlib.metadata import version
 
@@ -137,8 +146,8 @@ def test_doctor_looks_no_further_where_it_cannot_write(tmp_path):
     ended = sgcad("doctor", "--out", "/proc/runs", PREFECT_HOME="/proc/prefect")
     assert ended.returncode == 1
     assert "wrong output: --out /proc/runs: cannot be written" in ended.stdout
-    assert "not looked at flow: mend home, output first" in ended.stdout
-    assert "not looked at tracking: mend output first" in ended.stdout
+    assert "not checked flow: repair home, output first" in ended.stdout
+    assert "not checked tracking: repair output first" in ended.stdout
 
 
 def test_a_config_that_is_no_yaml_is_named(here, reports, tmp_path):
@@ -281,7 +290,7 @@ def test_a_tracker_that_fails_costs_no_case_and_the_next_run_logs(server, report
     broken = config_file(tracker={"name": "testkit", "file": str(log), "raises": True})
     ended = sgcad("evaluate", folder, "--config", broken, "--out", tmp_path / "out")
     assert ended.returncode == 0
-    assert "2 not logged, run again to log them; kit/" in ended.stdout
+    assert "2 not logged; run the same command again to log them; kit/" in ended.stdout
     mended = config_file(tracker={"name": "testkit", "file": str(log)})
     for _ in range(2):
         assert sgcad("evaluate", folder, "--config", mended, "--out", tmp_path / "out").returncode == 0
@@ -377,7 +386,7 @@ def test_a_batch_whose_prefect_server_is_killed_ends_under_another(server, repor
         _server_of(process).kill()
         said, complaints = process.communicate(timeout=200)
     assert process.returncode == 0, complaints
-    assert "Prefect's server was killed by signal 9; now another is started" in complaints
+    assert "Prefect's server was killed by signal 9; another one is started" in complaints
     assert "Traceback" not in complaints
     assert statuses(out) == {"a": "generated", "b": "generated", "c": "generated"}
     row = next(line for line in said.splitlines() if line.split()[:1] == ["kit"]).split()
@@ -396,8 +405,7 @@ def _server_of(process):
 def test_deployed_flows_do_the_same_from_plain_parameters(server, reports, config_file, tmp_path):
     folder, config, out = reports(a="", b="REFUSE"), config_file(), tmp_path / "out"
     code = (
-        "import sys; from flows.case.generate import generate_flow\n"
-        "from flows.batch.evaluate_flow import evaluate_flow\n"
+        "import sys; from flows.deploy.evaluate import evaluate_flow, generate_flow\n"
         "folder, config, out = sys.argv[1:]\n"
         "print(generate_flow(folder + '/a', config, out)['status'])\n"
         "print(evaluate_flow([folder], [config], out, jobs=1))\n"

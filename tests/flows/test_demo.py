@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from flows import demo
-from flows.batch.find_cases import Case
-from flows.case.case_folder import read_trajectories
-from flows.case.chain import run_case
+from flows.case.run_case import run_case
+from flows.case_files.case_folder import read_trajectories
+from flows.case_files.find_cases import Case
 from sgcad_core.config import load
 from sgcad_core.formats.sumo.net_xml import parse_net
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from flows.batch.find_cases import Case
-from flows.case.chain import run_case
+from flows.case.run_case import run_case
+from flows.case_files.find_cases import Case
 from flows.study.arm_config import load_config
 from flows.study.spec import load_study
 from plugins.retriever.lancedb import LanceDB

@@ -7,13 +7,13 @@ from uuid import uuid4
 
 import pytest
 
-from flows.batch.evaluate_flow import run_name
-from flows.batch.find_cases import Case
+from flows.batch.batch_flow import run_name
+from flows.batch.prefect_case_end import shows_every_step
 from flows.batch.prefect_case_task import _state
-from flows.batch.prefect_tasks import Graph
-from flows.case.case_end import shows_every_step
-from flows.case.chain import Ending
+from flows.batch.prefect_tasks import StepRuns
+from flows.case.run_case import Ending
 from flows.case.step_log import Step
+from flows.case_files.find_cases import Case
 
 ACCOUNT = {"verdict": "lacking", "told": 5, "has": 3, "lacking": 2, "assumed": 0, "items": []}
 
@@ -53,7 +53,7 @@ def test_what_is_shown_of_a_case_can_be_decided(monkeypatch, asked, every):
 def test_a_step_that_is_gone_on_with_begins_once_for_the_server(monkeypatch):
     sent = []
     monkeypatch.setattr("flows.batch.prefect_tasks.emit_event", lambda **event: sent.append(event["id"]))
-    graph, other = (Graph("3e9c5a0e-1c1f-4a34-b7f3-2f6a53a1a0f1", str(uuid4())) for _ in range(2))
+    graph, other = (StepRuns("3e9c5a0e-1c1f-4a34-b7f3-2f6a53a1a0f1", str(uuid4())) for _ in range(2))
     begun = Step("simulate", 10.0)
     for told in (begun, replace(begun, ended=11.0), begun, replace(begun, ended=12.0), Step("measure", 10.0)):
         graph.tell(told)
@@ -64,6 +64,6 @@ def test_a_step_that_is_gone_on_with_begins_once_for_the_server(monkeypatch):
 
 def test_a_plain_server_is_shown_attempts_only():
     shown = [
-        name for name in ("read", "road[2]", "scenario[1]", "track") if Graph("", "", False).shows(Step(name, 0.0))
+        name for name in ("read", "road[2]", "scenario[1]", "track") if StepRuns("", "", False).shows(Step(name, 0.0))
     ]
     assert shown == ["road[2]", "scenario[1]"]

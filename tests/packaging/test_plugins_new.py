@@ -16,7 +16,7 @@ from tests.packaging.conftest import ROOT
     ("kind", "name", "message"),
     [
         ("validater", "mine", r"unknown kind 'validater'. Did you mean 'validator'\? Kinds: report_reader"),
-        ("validator", "My-One", r"name 'My-One': small letters, digits and _"),
+        ("validator", "My-One", r"name 'My-One': use lower-case letters, digits and _"),
         ("validator", "topology", r"validator 'topology' is installed already \(plugins.validator.topology:Topology\)"),
     ],
 )
@@ -28,7 +28,7 @@ def test_what_cannot_be_a_plugin_is_named(tmp_path, kind, name, message):
 
 def test_a_package_that_is_there_is_left_alone(tmp_path):
     (tmp_path / "sgcad-mine").mkdir()
-    with pytest.raises(ConfigError, match="is there already: nothing was written"):
+    with pytest.raises(ConfigError, match="exists already: nothing was written"):
         scaffolding.new("decoder", "mine", tmp_path)
 
 

@@ -1,1 +1,1 @@
-"""The inbox deployment: which reports are ready, which worker takes them, where they go afterwards."""
+"""The inbox deployment: ready reports, claims of workers, finished reports."""

@@ -1,8 +1,8 @@
-"""The `inbox` deployment: reports that have come in since become scenarios, as one flow run.
+"""The `inbox` deployment: one flow run turns the waiting reports into scenarios.
 
     python -m flows.deploy.inbox.inbox s3://reports/new --config fused.yaml --out runs
 
-does by hand what the schedule does. Several may run at once, on one machine or many. Import after
+runs it by hand. Several may run at once, on one machine or many. Import after
 `settings.quiet_libraries()`.
 """
 
@@ -16,11 +16,10 @@ from pathlib import Path
 
 from prefect import flow
 
-from flows.batch.evaluate_flow import drive
-from flows.batch.find_cases import Case
-from flows.batch.plan_batch import MAX_JOBS, Crew, Job, batch_of
+from flows.batch.batch_flow import run_inside_flow
+from flows.batch.plan_batch import MAX_JOBS, batch_of
 from flows.batch.prefect_case_task import threads
-from flows.case.chain import Ending
+from flows.case_files.find_cases import Case
 from flows.deploy.defaults import inbox_address, overrides_of
 from flows.deploy.inbox.claims import Claims
 from flows.deploy.inbox.intake import Do, Intake, OnResult
@@ -30,7 +29,7 @@ from sgcad_core.errors import ConfigError
 from sgcad_core.system.temp_folders import temp_folder
 
 PORTION = 48
-"""Reports claimed at a time: what a killed worker holds, and how often worker processes start anew."""
+"""Reports claimed at a time: those held by a killed worker, and those per start of worker processes."""
 
 
 @flow(name="inbox", task_runner=threads(MAX_JOBS), persist_result=False)
@@ -46,14 +45,14 @@ def inbox_flow(
     wait_s: float = 30.0,
     watch_s: float = 0.0,
 ) -> dict[str, int]:
-    """Turn what lies at an address into scenarios; how many ended how.
+    """Turn the reports at an address into scenarios; the number of reports by status.
 
-    `address`: any fsspec address; by default the variable SGCAD_INBOX, then runs/inbox. A report counts as whole when
-    nobody has written to it for `settle_s`. A worker that says nothing for `lease_s` loses its reports. The run ends
+    `address`: any fsspec address; by default the variable SGCAD_INBOX, then runs/inbox. A report counts as complete
+    when it did not change for `settle_s`. A worker that is silent for `lease_s` loses its reports. The run ends
     when the inbox is empty or nothing could be taken for `wait_s`, but not before `watch_s` have passed.
     """
     address, named, config = inbox_address(address), overrides_of(overrides), config or settings.default_config()
-    batch_of((), [Path(config)], Path(out), named, jobs)  # a faulty config claims nothing
+    batch_of((), [Path(config)], Path(out), named, jobs)  # with a faulty config no report is claimed
     if min(settle_s, wait_s, watch_s) < 0 or lease_s <= 0 or portion < 1:
         raise ConfigError(
             f"settle_s {settle_s}, wait_s {wait_s}, watch_s {watch_s} must not be below 0, "
@@ -70,20 +69,13 @@ def _by_tasks(config: str, out: str, overrides: tuple[str, ...], jobs: int | Non
 
     def do(cases: Sequence[Case], on_result: OnResult) -> None:
         batch = batch_of(cases, [Path(config)], Path(out), overrides, jobs)
-        plan, crew = batch.plan(), Crew(batch)
-
-        def ended(job: Job, ending: Ending, untracked: str) -> None:
-            on_result(job.case, ending.result)
-
-        crew.begin(plan)
-        drive(plan, crew, ended)
-        crew.close()
+        run_inside_flow(batch, lambda job, ending, _untracked: on_result(job.case, ending.result))
 
     return do
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """One run by hand, with a Prefect server for its length where none is named."""
+    """Run the inbox once by hand."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("address")
     parser.add_argument("--config", default=settings.default_config())
@@ -101,7 +93,7 @@ if __name__ == "__main__":
 
     from flows.server import prefect_server
 
-    # Prefect was imported before the server was named, and would start one that outlives a kill.
+    # Prefect was imported before the server was named, and would start a server that survives a kill.
     with prefect_server() as server, temporary_settings({PREFECT_API_URL: settings.prefect_url()}):
         if server:
             server.wait()

@@ -1,12 +1,12 @@
-"""The inbox as a whole: which reports are ready, who takes them, where they go afterwards, each exactly once.
+"""The inbox: which reports are ready, which worker takes them, where they are moved, each exactly once.
 
-    <address>/report.txt ...       dropped by anybody: .txt, .xml, .pdf, or a folder a case
+    <address>/report.txt ...       put there by users: .txt, .xml, .pdf, or a folder a case
     <address>/done|refused|failed/<case>/    the report and outcome.json, afterwards
-    <address>/.inbox/claims        who works on what (flows/deploy/inbox/claims.py)
-    <address>/.inbox/ledger        one file a content that has been done: what makes "once" true
+    <address>/.inbox/claims        the workers of the reports (flows/deploy/inbox/claims.py)
+    <address>/.inbox/ledger        one file per finished content: no content runs twice
 
-A report is known by its content's digest, whatever it is called. Order at the end of a case: ledger, move,
-claim; a process killed in between leaves what the next look finishes. Knows no Prefect and not how a case is run.
+A report is identified by the digest of its content, not by its name. Order at the end of a case: ledger, move, claim;
+the next look finishes what a process killed in between has left.
 """
 
 from __future__ import annotations
@@ -22,28 +22,28 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
-from flows.batch.find_cases import SUFFIXES, Case, safe_id
+from flows.case_files.find_cases import SUFFIXES, Case, safe_id
 from flows.deploy.inbox.claims import ALONE_FROM, MAX_TAKES, Claim, Claims
 from flows.deploy.storage import HIDDEN, Entry, Place, Stamp
 from sgcad_core.result import counts_of
 
 LEDGER = f"{HIDDEN}/ledger"
 UNREAD = "unread"
-APART = {"generated": "done", "refused": "refused", "exhausted": "failed", "failed": "failed", UNREAD: UNREAD}
-"""Status of a case -> folder its report is moved to; `unread`: nothing that we read."""
+FOLDERS = {"generated": "done", "refused": "refused", "exhausted": "failed", "failed": "failed", UNREAD: UNREAD}
+"""Status of a case -> folder its report is moved to; `unread`: no reader takes it."""
 UNFINISHED = (".part", ".partial", ".tmp", ".temp", ".crdownload", ".filepart", ".swp", "~")
-"""Names that programs give to files they have not finished."""
+"""Endings that programs give to unfinished files."""
 LITTER_S = 3600.0
 LOOK_S = 1.0
-"""Between two looks at an inbox that is watched."""
+"""Time between two looks at a watched inbox."""
 
 OnResult = Callable[[Case, dict[str, Any]], None]
 Do = Callable[[Sequence[Case], OnResult], None]
-"""Runs cases and tells of each as it ends, from one thread."""
+"""Runs cases and reports each as it ends, from one thread."""
 
 
 class Taken(NamedTuple):
-    """A report that is ours for now, with a copy of its content that nobody else changes."""
+    """A report that this worker has claimed, with a private copy of its content."""
 
     entry: Entry
     claim: Claim
@@ -65,15 +65,15 @@ class Intake:
     _digests: dict[Entry, str] = field(default_factory=dict)
 
     def work(self, do: Do, portion: int, wait_s: float, watch_s: float = 0.0) -> dict[str, int]:
-        """Take and do reports until none is left, or nothing could be taken for `wait_s`; counts by status.
+        """Take and run reports until none is left, or none could be taken for `wait_s`; counts by status.
 
-        However empty it is, new ones are looked for until `watch_s` have passed.
+        An empty inbox is watched for new reports until `watch_s` have passed.
         """
         self.place.sweep(LITTER_S, time.time())
         patience, watched = time.monotonic() + wait_s, time.monotonic() + watch_s
         with self.claims.beating():
             while True:
-                self.put_unread_apart()
+                self.move_unread()
                 if taken := self.take(portion):
                     self._do(taken, do)
                     patience = time.monotonic() + wait_s
@@ -99,8 +99,8 @@ class Intake:
                 self.claims.release(rest.claim)
                 _unstage(rest)
 
-    def put_unread_apart(self) -> None:
-        """Move what no reader reads beside the reason, so that its sender is not left waiting."""
+    def move_unread(self) -> None:
+        """Move files that no reader takes to `unread`, with the reason in outcome.json."""
         for entry in self._waiting():
             if _is_report(entry) or entry.name.lower().endswith(UNFINISHED) or not self._is_settled(entry):
                 continue
@@ -116,12 +116,12 @@ class Intake:
                 "case": safe_id(entry.name),
                 "name": entry.name,
             }
-            if self._put_apart(entry, outcome):
+            if self._move_with_outcome(entry, outcome):
                 self.counts[UNREAD] += 1
 
     # ------------------------------------------------------------------ taking
     def take(self, count: int) -> list[Taken]:
-        """Claim up to `count` ready reports; one that has been done before goes where its like went."""
+        """Claim up to `count` ready reports; a content finished before is moved to its former folder."""
         taken: list[Taken] = []
         for entry in self._ready():
             if len(taken) >= count:
@@ -133,8 +133,8 @@ class Intake:
         return taken
 
     def _waiting(self) -> list[Entry]:
-        """All entries but our folders and what is being moved away; the listing comes first, then who leaves."""
-        entries = [e for e in self.place.entries() if e.name not in APART.values()]
+        """All entries but result folders and entries being moved away; listed before the moves are read."""
+        entries = [e for e in self.place.entries() if e.name not in FOLDERS.values()]
         leaving = self.place.leaving()
         return [e for e in entries if e.name not in leaving]
 
@@ -142,7 +142,7 @@ class Intake:
         return (entry for entry in self._waiting() if _is_report(entry) and self._is_settled(entry))
 
     def _is_settled(self, entry: Entry) -> bool:
-        """Whether it was left alone for long enough, by its dates or, where clocks differ, by our own watch."""
+        """Whether it was unchanged for long enough, by its dates or, where clocks differ, by this process's clock."""
         if not entry.files or any(f.name.lower().endswith(UNFINISHED) for f in entry.files):
             return False
         if time.time() - entry.newest >= self.settle_s:
@@ -157,7 +157,7 @@ class Intake:
         content = None if entry in self._digests else self._content(entry)
         digest = self._digests.get(entry) or (_digest(entry, content) if content is not None else "")
         if not digest:
-            return None  # another worker has moved it since we looked
+            return None  # another worker has moved it meanwhile
         self._digests[entry] = digest
         if self._known(entry, digest) or (claim := self.claims.take(digest, alone)) is None:
             return None
@@ -170,10 +170,12 @@ class Intake:
         return taken if self._may_be_tried(taken) else None
 
     def _may_be_tried(self, taken: Taken) -> bool:
-        """Whether it has not ended too many workers; if it has, it is put apart."""
+        """Whether few enough workers died with it; otherwise it is moved to `failed`."""
         if taken.claim.number <= MAX_TAKES:
             return True
-        reason = f"{MAX_TAKES} workers died while they had this report: look at their logs; drop it again to try again"
+        reason = (
+            f"{MAX_TAKES} workers died while they had this report: see their logs; put it into the inbox again to retry"
+        )
         self.hand_in(taken, {"status": "failed", "reason": reason, "missing": []})
         return False
 
@@ -188,10 +190,10 @@ class Intake:
 
     # ------------------------------------------------------------------ handing in
     def _known(self, entry: Entry, digest: str) -> bool:
-        """Whether this content has been done; its report is then put where it belongs."""
+        """Whether this content is finished; its report is then moved to its folder."""
         if (outcome := self._outcome(digest)) is None:
             return False
-        if self._put_apart(entry, outcome):
+        if self._move_with_outcome(entry, outcome):
             self.counts["again"] += 1
         return True
 
@@ -201,10 +203,10 @@ class Intake:
         return outcome
 
     def hand_in(self, taken: Taken, result: dict[str, Any]) -> None:
-        """Note a case's ending and move its report; nothing if another worker has taken it over."""
+        """Record a case's ending and move its report, unless another worker has taken it over."""
         _unstage(taken)
         if not self.claims.is_mine(taken.claim):
-            self.claims.forsake(taken.claim)
+            self.claims.stop_renewing(taken.claim)
             self.counts["taken_over"] += 1
             return
         outcome = {key: result.get(key) for key in ("status", "reason", "missing")} | {"account": _account(result)}
@@ -218,18 +220,18 @@ class Intake:
         if outcome["status"] != "failed":  # a failed one may be dropped again
             self.place.create(f"{LEDGER}/{taken.claim.digest}.json", _json(outcome))
             outcome = self._outcome(taken.claim.digest) or outcome
-        self._put_apart(taken.entry, outcome)
+        self._move_with_outcome(taken.entry, outcome)
         self.claims.release(taken.claim)
         self.counts[str(outcome["status"])] += 1
 
     def _result_of(self, case: Case, result: dict[str, Any]) -> str | None:
-        """The folder that holds what became of a case; None where nothing was written."""
+        """The folder of a case's results; None if none was written."""
         config = result.get("config")
         return str(self.out.resolve() / str(config) / case.id) if config else None
 
-    def _put_apart(self, entry: Entry, outcome: dict[str, Any]) -> bool:
-        """Move a report beside its outcome, unless it was written anew or another worker has moved it."""
-        folder = f"{APART[outcome['status']]}/{outcome['case']}"
+    def _move_with_outcome(self, entry: Entry, outcome: dict[str, Any]) -> bool:
+        """Move a report beside its outcome, unless it was changed or moved meanwhile."""
+        folder = f"{FOLDERS[outcome['status']]}/{outcome['case']}"
         if self.place.entry(entry.name) != entry:
             return False
         self.place.write(f"{folder}/outcome.json", _json(outcome))
@@ -241,7 +243,7 @@ class Intake:
 
 
 def _account(result: dict[str, Any]) -> dict[str, Any] | None:
-    """What the scenario has and lacks of what is told, with every thing that lacks; None where there is no scenario."""
+    """The account of the scenario with all things that lack; None without a scenario."""
     account = counts_of(result)
     if account is None:
         return None
@@ -250,14 +252,14 @@ def _account(result: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def _is_report(entry: Entry) -> bool:
-    """Whether it could be one by its name."""
+    """Whether its name is that of a report."""
     if entry.name.lower().endswith(UNFINISHED):
         return False
     return entry.is_folder or PurePosixPath(entry.name).suffix.lower() in SUFFIXES
 
 
 def _digest(entry: Entry, content: dict[str, bytes]) -> str:
-    """Of what a reader sees: names and content within a folder, kind and content of a file; not its own name."""
+    """Digest of an entry's content: names and contents within a folder, suffix and content of a file."""
     found = hashlib.sha256(PurePosixPath(entry.name).suffix.lower().encode() if not entry.is_folder else b"/")
     for name, data in sorted(content.items()):
         found.update(f"\n{name}\n{len(data)}\n".encode("utf-8", "surrogateescape") + data)
@@ -265,7 +267,7 @@ def _digest(entry: Entry, content: dict[str, bytes]) -> str:
 
 
 def _stage(entry: Entry, content: dict[str, bytes], digest: str, staging: Path) -> Case:
-    """Copy a report to where only this claim's holder reads it. The case is called by name and content."""
+    """Copy a report into this worker's staging folder. The case's name is made of the report's name and digest."""
     stem = entry.name if entry.is_folder else PurePosixPath(entry.name).stem
     name = safe_id(f"{safe_id(stem)[:80]}-{digest[:12]}")
     source = staging / name / (name if entry.is_folder else f"{name}{PurePosixPath(entry.name).suffix.lower()}")

@@ -1,6 +1,6 @@
 "use strict";
-// The case page: what belongs together lights up; the map moves; drawings grow; keys go on to the next case.
-// `window.desk` is what mend.js builds on. Text only ever becomes text.
+// The case page: related elements are highlighted; the map moves; drawings grow; keys open the next case.
+// mend.js uses `window.desk`. Text is inserted as text only, never as markup.
 (() => {
   const $ = (id) => document.getElementById(id);
   const desk = (window.desk = { lit: [], picks: null });
@@ -128,7 +128,7 @@
       try {
         const answer = await fetch(`/version/${page.dataset.key}`);
         if (page === main() && !desk.busy) {
-          if (answer.status === 404) { $("changed").hidden = false; $("changed").firstChild.textContent = "This case was removed from the folder, or is being written anew. "; }
+          if (answer.status === 404) { $("changed").hidden = false; $("changed").firstChild.textContent = "This case was removed from the folder, or is being written again. "; }
           else if (answer.ok) $("changed").hidden = (await answer.json()).version === page.dataset.version;
         }
       } catch { $("changed").hidden = false; $("changed").firstChild.textContent = "The desk does not answer; was it stopped? "; }

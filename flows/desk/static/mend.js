@@ -1,6 +1,6 @@
 "use strict";
-// Mending: an editor at the fact, vehicles dragged to another lane, undo, run again. A refused change says why, at its
-// field where it concerns one; the page then stays as it was.
+// Editing: an editor at each fact, vehicles dragged to another lane, undo, run again. A refused change shows its reason at
+// its field, or above the facts; the page then stays as it was.
 (() => {
   const $ = (id) => document.getElementById(id);
   const desk = window.desk;
@@ -13,7 +13,7 @@
     if (desk.busy) return null;
     const page = $("main"), key = page.dataset.key, started = performance.now();
     desk.busy = true; page.classList.add("busy"); page.setAttribute("aria-busy", "true");
-    desk.say({ edit: "Planning and simulating …", undo: "Taking it back …", rerun: "Running the case again …" }[kind]);
+    desk.say({ edit: "Planning and simulating …", undo: "Undoing …", rerun: "Running the case again …" }[kind]);
     const body = JSON.stringify({ version: page.dataset.version, stamp: page.dataset.stamp, edits, why, who: localStorage.getItem("desk-who") || "" });
     try {
       const answer = await fetch(`/${kind}/${key}`, { method: "POST", headers: { "Content-Type": "application/json", "X-Desk-Token": token }, body });
@@ -23,7 +23,7 @@
       closeEditor();
       await desk.refresh();
       const seconds = ((performance.now() - started) / 1000).toFixed(1);
-      desk.say(said.changed === false ? "That is what it was already." : `Done in ${seconds} s: ${said.status}.`);
+      desk.say(said.changed === false ? "The value was the same already." : `Done in ${seconds} s: ${said.status}.`);
       document.documentElement.dataset.mended = String(Number(document.documentElement.dataset.mended || 0) + 1);
       return { ok: true, ...said };
     } catch {
@@ -130,7 +130,7 @@
       if (!dragged) return;
       car.setAttribute("transform", home);
       if (e.type === "pointerup" && strip) { car.setAttribute("transform", `translate(${desk.ground(e).x} ${desk.ground(e).y})`); move(car.dataset.actor, strip).then((said) => { if (!said?.ok) car.setAttribute("transform", home); }); }
-      else if (e.type === "pointerup") desk.say("There is no lane for it there.");
+      else if (e.type === "pointerup") desk.say("There is no lane at this place.");
     };
     car.addEventListener("pointerup", end); car.addEventListener("pointercancel", end);
     car.addEventListener("keydown", (e) => {
@@ -140,7 +140,7 @@
       const button = document.querySelector(`button.value[data-field="${groupOf(car.dataset.actor)}.start_lane"]`);
       if (!button) return;
       const now = Number(JSON.parse(button.dataset.edit).value) || Number(button.textContent) || 0;
-      if (now + step < 1) { desk.say("It is in the rightmost lane already."); return; }
+      if (now + step < 1) { desk.say("The vehicle is in the rightmost lane already."); return; }
       desk.change("edit", { [button.dataset.field]: now + step }, "moved on the map");
     });
   }

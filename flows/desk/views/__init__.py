@@ -1,1 +1,1 @@
-"""What the desk's pages show: rows, filters, forms, maps."""
+"""Contents of the desk's pages: rows, filters, forms, maps."""

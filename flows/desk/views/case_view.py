@@ -1,7 +1,7 @@
-"""What a case's page shows beside the map: the report in sentences, facts by the thing they tell of, the account.
+"""Contents of a case's page beside the map: the report in sentences, facts by thing, the account.
 
-A *thing* is what lights up together: "V1", "road:main" (a road of the report), "leg:N" (a road as drawn), "contact",
-"junction", "conditions". Reads a case's folder; knows no page.
+A *thing* is a group of elements that is highlighted together: "V1", "road:main" (a road of the report), "leg:N" (a
+road as drawn), "contact", "junction", "conditions".
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ FILES: Mapping[str, str] = {
     "road.net.xml": "SUMO network", "trajectories.csv": "trajectories", "metrics.json": "metrics",
     "result.json": "result", "report.txt": "report", "facts.yaml": "edits",
 }  # fmt: skip
-"""What of a case's folder can be downloaded."""
+"""Files of a case's folder that can be downloaded."""
 ATTEMPT = re.compile(r"(road|scenario)-\d{2,4}")
 ATTEMPT_FILES = ("prompt.txt", "answer.txt", "findings.json")
 _DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
@@ -31,7 +31,7 @@ _LARGEST = 4 * 2**20
 
 @dataclass(frozen=True)
 class Piece:
-    """A stretch of the narrative; `number` of the sentence and what it tells of, where it tells anything."""
+    """A part of the narrative; if it is a sentence with facts, its number and the things it tells of."""
 
     text: str
     number: int = -1
@@ -40,7 +40,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class FactRow:
-    """One fact as a line: `sentence` is its piece's number, -1 without one; `others`: what other readers say."""
+    """One fact as a line. `sentence`: its piece's number or -1; `others`: values of other readers."""
 
     field: str
     name: str
@@ -64,7 +64,7 @@ class Group:
     facts: tuple[FactRow, ...]
     remove: str = ""
     findings: tuple[str, ...] = ()
-    """What concerns the thing as a whole."""
+    """Findings of the thing as a whole."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ class CasePage:
     player: bool
     verdict: str
     accounted: bool
-    """Whether the result says what of the report is in the scenario; older versions' do not."""
+    """Whether the result has an account; results of older versions have none."""
     result: Mapping[str, Any] = field(repr=False)
 
 
@@ -124,7 +124,7 @@ def page_of(folder: Path, result: Mapping[str, Any]) -> CasePage:
 
 
 def verdict_of(result: Mapping[str, Any]) -> str:
-    """What came of the case in a line: why nothing did, or what happens and whether that is what was declared."""
+    """The result in a line: the reason, or the contact and whether it is the declared one."""
     if result["status"] != "generated":
         return str(result.get("reason") or result["status"])
     collision, near = result.get("collision") or {}, result.get("near_crash")
@@ -132,13 +132,13 @@ def verdict_of(result: Mapping[str, Any]) -> str:
         return f"near crash, {'as declared' if near['realised'] else 'not as declared'}"
     if not collision.get("declared"):
         return "no contact is declared"
-    seen = contact_of(result) or "nobody touches"
+    seen = contact_of(result) or "no contact"
     return f"{seen}, {'as declared' if collision['realised'] else 'not as declared'}"
 
 
 # ------------------------------------------------------------------ the report
 def spans_of(folder: Path, result: Mapping[str, Any]) -> dict[int, tuple[int, int]]:
-    """Where the sentences stand in the narrative as it is shown: their begin as it was written -> [begin, end).
+    """Positions of sentences in the shown narrative: begin in the original text -> [begin, end).
 
     The player knows it where parts of the report were taken out; else both are the same.
     """
@@ -193,7 +193,7 @@ def title_of(thing: str) -> str:
 
 
 def order_of(thing: str) -> tuple[int, str]:
-    """Where a thing stands among the others: contact, actors, junction, roads, the rest."""
+    """Sort key of a thing: contact, actors, junction, roads, the rest."""
     kind = thing.partition(":")[0]
     order = {"contact": 0, "junction": 2, "leg": 3, "road": 4, "conditions": 5, "": 6}
     return order.get(kind, 1), thing

@@ -1,7 +1,6 @@
-"""What of a case a person may change, put among its facts: every editable field at the thing it belongs to.
+"""The editable fields of a case among its facts, each at its thing.
 
-Made from the revision's own list of fields, so that a new kind of field appears here by itself. Pure functions; knows
-no page but the rows that it shows.
+Made from the revision's list of fields, so that a new kind of field appears here without changes.
 """
 
 from __future__ import annotations
@@ -22,14 +21,14 @@ PRESENT = ".present"
 SEVERAL = 2
 """A finding that concerns more fields of a thing than this concerns the thing."""
 Findings = Mapping[str, Sequence[str]]
-"""What is to be said at a field; under "" what concerns none."""
+"""Findings by field; under "" those of no field."""
 _NEW = {"V": "vehicle", "P": "pedestrian", "B": "cyclist", "O": "object"}
-"""What can be added, by the letter of its id."""
+"""Kinds of actors that can be added, by the letter of their ids."""
 
 
 @dataclass(frozen=True)
 class Addition:
-    """One thing that a person may add: what the button says and the edits that add it."""
+    """One thing that can be added: its label and the edits that add it."""
 
     words: str
     edits: str
@@ -38,7 +37,7 @@ class Addition:
 def groups_with(
     groups: Sequence[Group], fields: Sequence[CaseField], edits: Iterable[Edit], findings: Findings
 ) -> list[Group]:
-    """The facts by thing, with what can be changed as such, and the editable fields of which there is no fact."""
+    """The facts by thing, those that can be changed marked, and the editable fields without a fact."""
     known = {field.name: field for field in fields}
     given = {edit.field: edit for edit in edits}
     rows: dict[str, list[FactRow]] = {}
@@ -60,7 +59,7 @@ def groups_with(
 
 
 def _group(thing: str, rows: Sequence[FactRow], remove: str) -> Group:
-    """A thing's rows; what is said of many of its fields is said once, of the thing, and at what a person gave."""
+    """A thing's rows; a finding of many fields is shown once for the thing, and at fields edited by a person."""
     count = Counter(line for row in rows for line in row.findings)
     whole = tuple(line for line, number in count.items() if number > SEVERAL)
     kept = [replace(row, findings=tuple(line for line in row.findings if line not in whole or row.basis == "person"))
@@ -69,7 +68,7 @@ def _group(thing: str, rows: Sequence[FactRow], remove: str) -> Group:
 
 
 def _ordered(rows: Sequence[FactRow]) -> tuple[FactRow, ...]:
-    """What is told or assumed before what is open."""
+    """Rows with a value before open ones."""
     return tuple(sorted(rows, key=lambda row: not row.basis))
 
 
@@ -87,7 +86,7 @@ def _row(row: FactRow, field: CaseField, edit: Edit | None, findings: Findings) 
 
 
 def _asked(field: CaseField) -> str:
-    """How a page asks for the field, as JSON."""
+    """Description of a field's input for the page, as JSON."""
     kind = field.kind
     value = list(field.value) if isinstance(field.value, tuple) else field.value
     asked: dict[str, Any] = {
@@ -99,7 +98,7 @@ def _asked(field: CaseField) -> str:
 
 # ------------------------------------------------------------------ what can be added
 def additions(fields: Sequence[CaseField]) -> Iterator[Addition]:
-    """Actors, a contact where there are actors enough, and legs of the compass that are not there."""
+    """Actors, a contact if there are two actors, and compass legs without a road."""
     actors = [field.name.split(".")[1] for field in fields if field.name.endswith(PRESENT) and _is_actor(field.name)]
     for letter, words in _NEW.items() if actors else ():
         numbers = [int(name[1:]) for name in actors if name[0] == letter and name[1:].isdigit()]

@@ -1,4 +1,4 @@
-"""What fields and values are called on the desk's pages."""
+"""Labels of fields and values on the desk's pages."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from typing import Any
 
 _NAMES = {
     "kind": "is a", "start_speed_mph": "speed before", "final_speed_mph": "last speed", "start_road": "starts on",
-    "start_lane": "starts in lane", "exit_road": "leaves by", "lane_word": "lane as told", "striker": "who strikes",
-    "struck": "who is struck", "striker_area": "side of the striker", "struck_area": "side of the struck",
+    "start_lane": "starts in lane", "exit_road": "leaves by", "lane_word": "lane as told", "striker": "striker",
+    "struck": "struck actor", "striker_area": "side of the striker", "struck_area": "side of the struck",
     "lanes_forward": "lanes towards the junction", "lanes_backward": "lanes away from it", "axis": "runs",
     "lanes_total": "lanes in all", "lanes_each_way": "lanes each way", "one_way": "one-way",
     "speed_limit_mph": "speed limit", "exit_heading": "heading behind", "present": "takes part",

@@ -1,7 +1,4 @@
-"""Which rows a person asked for, in which order: filters, sorting, counts beside the filters, pages.
-
-Pure functions on rows; an `Asked` is the page's query string and back.
-"""
+"""Filters, sorting, counts and pages of the list's rows; `ListQuery` is the page's query string and back."""
 
 from __future__ import annotations
 
@@ -22,7 +19,7 @@ FLAGS: Mapping[str, tuple[str, Callable[[Row], bool]]] = {
     "mended": ("mended by a person", lambda row: row.mended > 0),
     "unmended": ("not mended yet", lambda row: row.mended == 0),
 }
-"""What a case may have: its words and its test."""
+"""Conditions of the list: label and test."""
 FACETS: Mapping[str, str] = {
     "trust": "Trust", "status": "Status", "kind": "Kind of crash", "place": "Place", "config": "Config",
 }  # fmt: skip
@@ -37,7 +34,7 @@ SORTS: Mapping[str, tuple[str, Callable[[Row], Any]]] = {
     "doubts": ("Doubts", lambda r: (-r.doubts - r.disagreeing, r.case)),
     "config": ("Config", lambda r: (r.config, r.case)),
 }
-"""Columns that sort, each in the order in which a person would first want it."""
+"""Columns that sort, each with its first order."""
 
 
 def _low(row: Row) -> float:
@@ -45,8 +42,8 @@ def _low(row: Row) -> float:
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What a person asked the list for; empty means all. `below`: most confidence, of [0, 1]."""
+class ListQuery:
+    """The list's filters and order; empty means all. `below`: maximum confidence, in [0, 1]."""
 
     text: str = ""
     trust: str = ""
@@ -61,11 +58,11 @@ class Asked:
     page: int = 1
 
     @staticmethod
-    def of(query: Mapping[str, str]) -> Asked:
-        """From a query string; what is not understood counts as not asked."""
+    def of(query: Mapping[str, str]) -> ListQuery:
+        """Read a query string; unknown values are ignored."""
         texts = {name: str(query.get(name, ""))[:200] for name in ("text", *FACETS)}
         flag, sort = query.get("flag", ""), query.get("sort", "trust")
-        return Asked(
+        return ListQuery(
             **texts, flag=flag if flag in FLAGS else "", below=_share(query.get("below", "")),
             sort=sort if sort in SORTS else "trust", reverse=query.get("reverse") == "1",
             page=max(1, _whole(query.get("page", "1"))),
@@ -95,23 +92,23 @@ def _whole(text: str) -> int:
     return int(text) if text.isascii() and text.isdigit() and len(text) < 8 else 1
 
 
-def chosen(rows: Iterable[Row], asked: Asked) -> list[Row]:
+def chosen(rows: Iterable[Row], asked: ListQuery) -> list[Row]:
     """The rows that were asked for, in their order."""
     found = [row for row in rows if holds(row, asked)]
     return sorted(found, key=SORTS[asked.sort][1], reverse=asked.reverse)
 
 
-def holds(row: Row, asked: Asked) -> bool:
+def holds(row: Row, asked: ListQuery) -> bool:
     """Whether a row is asked for."""
     return not _unlike(row, asked) and _fits(row, asked)
 
 
-def _unlike(row: Row, asked: Asked) -> list[str]:
+def _unlike(row: Row, asked: ListQuery) -> list[str]:
     """The facets in which a row is another than what is asked for."""
     return [name for name in FACETS if (wanted := getattr(asked, name)) and getattr(row, name) != wanted]
 
 
-def _fits(row: Row, asked: Asked) -> bool:
+def _fits(row: Row, asked: ListQuery) -> bool:
     """Whether a row has what is asked for beside the facets."""
     if asked.flag and not FLAGS[asked.flag][1](row):
         return False
@@ -124,8 +121,8 @@ def _told(row: Row) -> str:
     return " ".join((row.case, row.config, row.kind, row.place, row.contact, row.reason, row.status)).casefold()
 
 
-def counts(rows: Sequence[Row], asked: Asked) -> dict[str, list[tuple[str, int]]]:
-    """Of each facet its values with the number of cases that choosing it would leave, in the order to show."""
+def counts(rows: Sequence[Row], asked: ListQuery) -> dict[str, list[tuple[str, int]]]:
+    """For each facet its values, in order, with the number of cases that selecting one would leave."""
     tallies: dict[str, Counter[str]] = {name: Counter() for name in FACETS}
     for row in rows:
         unlike = _unlike(row, asked)
@@ -140,7 +137,7 @@ def _in_order(name: str, tally: Counter[str], wanted: str) -> list[tuple[str, in
     return [(value, tally[value]) for value in known if value and (tally[value] or value == wanted)]
 
 
-def page_of(rows: Sequence[Row], asked: Asked) -> tuple[Sequence[Row], int, int]:
+def page_of(rows: Sequence[Row], asked: ListQuery) -> tuple[Sequence[Row], int, int]:
     """The rows of the page that was asked for (the last one where there are fewer), its number, and how many pages."""
     pages = max(1, -(-len(rows) // PAGE))
     number = min(asked.page, pages)

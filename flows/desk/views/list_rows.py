@@ -1,7 +1,4 @@
-"""One line of the list: what a finished case came to, from its result.json alone.
-
-Pure functions on the content of result.json, written by any version; knows no file and no page.
-"""
+"""One line of the list of cases, from the content of a result.json of any version."""
 
 from __future__ import annotations
 
@@ -13,8 +10,8 @@ from sgcad_core.kinds import ACTORS, JUNCTIONS, kind_of_letter
 from sgcad_core.result import as_declared
 
 Trust = Literal["broken", "lacking", "doubtful", "refused", "whole"]
-"""What to do with a case: nothing usable came of it; something that is told is missing in it; it holds, with doubts;
-the report carries no scenario; nothing is known to be wrong."""
+"""State of a case: no usable scenario; something told is missing; complete, with doubts; the report carries no
+scenario; no known fault."""
 TRUSTS: tuple[Trust, ...] = ("broken", "lacking", "doubtful", "refused", "whole")
 """In the order in which a person should look."""
 UNREADABLE = "unreadable"
@@ -46,7 +43,7 @@ class Row:
     disagreeing: int = 0
     """Fields of which two readers (text, drawing, coded fields, model) say different things."""
     accounted: bool = False
-    """Whether the result says what of the report is in the scenario; older versions' do not."""
+    """Whether the result has an account; results of older versions have none."""
     mended: int = 0
     """Facts that a person gave."""
     contact: str = ""
@@ -98,7 +95,7 @@ def account_counts(result: Mapping[str, Any]) -> dict[str, int]:
 
 
 def notes_of(result: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """What every step remarked: {"kind", "field", "subject", "text", ...}; plain lines of older results too."""
+    """Notes of all steps: {"kind", "field", "subject", "text", ...}; also plain lines of older results."""
     return [dict(note) if isinstance(note, Mapping) else {"kind": "plan", "field": "", "subject": "", "text": str(note)}
             for note in result.get("notes") or ()]  # fmt: skip
 
@@ -124,7 +121,7 @@ def confidence_of(facts: Iterable[Mapping[str, Any]]) -> float | None:
 
 
 def kind_of(result: Mapping[str, Any]) -> str:
-    """What kind of crash is declared, in a word or two; "" where none is."""
+    """Kind of the declared crash in a word or two; "" where none is declared."""
     if near := result.get("near_crash"):
         return f"near crash, {_pair(near['declared']['conflict'], {}, _types(result))}"
     declared = (result.get("collision") or {}).get("declared")
@@ -163,7 +160,7 @@ def _pair(contact: Mapping[str, Any], maneuvers: Mapping[str, str], kinds: Mappi
 
 
 def place_of(facts: Iterable[Mapping[str, Any]], result: Mapping[str, Any]) -> str:
-    """Where it happens: the kind of junction as read, else as written; "" where there is no network."""
+    """Kind of junction as read, else as written; "" without a network."""
     told = [fact["value"] for fact in facts if fact["field"] == "junction.kind"]
     if told:
         return _PLACES.get(told[-1], str(told[-1]).replace("_", " ")).removeprefix("a ")
@@ -174,7 +171,7 @@ def place_of(facts: Iterable[Mapping[str, Any]], result: Mapping[str, Any]) -> s
 
 
 def contact_of(result: Mapping[str, Any]) -> str:
-    """Who meets whom with which sides, as observed, the striker first; "" where nobody touches."""
+    """The observed first contact, actors and sides, the striker first; "" without contact."""
     collision = result.get("collision") or {}
     seen, declared = collision.get("observed"), collision.get("declared") or {}
     if not seen:

@@ -1,4 +1,4 @@
-"""A case's map for the page: lanes that can be picked, everyone's path and start, the contact; plain numbers.
+"""A case's map for the page: lanes that can be picked, paths and starts of all actors, the contact; plain numbers.
 
 Metres, x east, y down as SVG has it (north stays up). Reads a case's folder; knows no page and no pixels.
 """
@@ -15,8 +15,8 @@ import numpy as np
 
 from flows.player.player_highlights import road_along, road_axes
 from flows.player.road_shapes import drawing_of
-from flows.results.figures.scene import Scene, scene_of
-from flows.results.reading import Ran
+from flows.results.reading import FinishedCase
+from flows.results.report.scene import Scene, scene_of
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.roads.lane_graph import Edge, Floats, Lane, LaneGraph, road_of
@@ -24,7 +24,7 @@ from sgcad_core.roads.lane_graph import Edge, Floats, Lane, LaneGraph, road_of
 MARGIN_M = 12.0
 LEAST_HALF_M, MOST_HALF_M = 30.0, 160.0
 NETWORK_HALF_M = 70.0
-"""Half the side of what is shown of a network on which nobody drives."""
+"""Half the side of the shown square of a network without trajectories."""
 COLORS = 8
 """Colors of vehicles; the stylesheet names them c0 to c7, in the player's order."""
 
@@ -85,7 +85,7 @@ def map_of(folder: Path, result: Mapping[str, Any]) -> RoadMap | None:
         graph, drawing = parse_net(net_xml), drawing_of(net_xml)
     except (OSError, ValueError, InvalidOutput):
         return None
-    scene = scene_of(Ran(folder.parent.name, folder.name, folder, result, {}))
+    scene = scene_of(FinishedCase(folder.parent.name, folder.name, folder, result, {}))
     axes = road_axes(result.get("facts") or ())
     count = sum(len(edge.lanes) for edge in graph.edges.values())  # a drawing has the lanes first, then the ways across
     own = [(edge, lane) for edge in graph.edges.values() for lane in edge.lanes]
@@ -143,7 +143,7 @@ def _dense(shape: Floats) -> Floats:
 
 
 def _box(scene: Scene | None, graph: LaneGraph) -> tuple[float, float, float, float]:
-    """A square that holds everyone's way from where it starts; without anybody the middle of the network."""
+    """A square that holds all paths from their starts; without actors the middle of the network."""
     if scene is not None:
         points = np.vstack([path.pose[:, :2] for path in scene.paths.values()])
         low, high = points.min(axis=0), points.max(axis=0)

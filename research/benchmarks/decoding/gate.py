@@ -22,8 +22,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from pathlib import Path
 
-from flows.batch.find_cases import cases_in
-from flows.case.model_calls import ask_of
+from flows.case.chain import ask_of
+from flows.case_files.find_cases import cases_in
 from plugins.report_reader.degrade import LEVELS, Level, degrade
 from plugins.validator.evidence_gate import GROUPS, nats_of
 from research.benchmarks.decoding.gate_sweep import Sample, Score, area, choose, halves, refused, score, sweep

@@ -15,7 +15,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from flows.case import case_links
+from flows.case_files import case_links
 
 TIMES = re.compile(rb'"seconds": ?(\{[^{}]*\}|[0-9.eE+-]+)|"shared": ?\[[^\]]*\]')
 """How long something took, and which stages another arm had done by then: both go by who was first."""

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import psutil
 
-from flows.doctor import CHECKS, Trouble
+from flows.doctor import CHECKS, CheckFailed
 from research.benchmarks.faults.places import Place
 from research.benchmarks.faults.targets import Target
 
@@ -116,7 +116,7 @@ def _doctor(place: Place) -> list[str]:
     with place.as_temporary():
         try:
             said = CHECKS["leftovers"](place.folder / "out")
-        except Trouble as told:  # processes of somebody else: ours have ended
+        except CheckFailed as told:  # processes of somebody else: ours have ended
             said = str(told)
     lying = {
         "half-written case folder": list(place.folder.glob("out/*/.partial-*")),

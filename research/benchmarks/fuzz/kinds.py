@@ -69,7 +69,7 @@ def _xosc(content: bytes, place: Path) -> object:
 
 
 def _rows(content: bytes, place: Path) -> object:
-    from flows.case import case_folder
+    from flows.case_files import case_folder
 
     (file := place / "trajectories.csv").write_bytes(content)
     return case_folder.read_trajectories(file)
@@ -77,8 +77,8 @@ def _rows(content: bytes, place: Path) -> object:
 
 def _whole(content: bytes, place: Path) -> object:
     """From a report to its folder with the default config. Raises AssertionError where a bug cost the case."""
-    from flows.batch.find_cases import Case
-    from flows.case.chain import run_case
+    from flows.case.run_case import run_case
+    from flows.case_files.find_cases import Case
     from sgcad_core import settings
     from sgcad_core.config import load
 

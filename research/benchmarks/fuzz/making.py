@@ -107,8 +107,8 @@ def _json(rng: random.Random, depth: int) -> object:
 @cache
 def example() -> tuple[str, str, str, str, str]:
     """A layout's JSON, net, xodr, xosc and trajectories of a small crash, as the default config makes them."""
-    from flows.batch.find_cases import Case
-    from flows.case.chain import run_case
+    from flows.case.run_case import run_case
+    from flows.case_files.find_cases import Case
     from sgcad_core import settings
     from sgcad_core.config import load
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import itertools
+import json
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -20,13 +21,16 @@ from typing import Any, cast
 
 from rich.console import Console
 
-from flows.batch.second_simulator import judged_runs, show
+from flows.batch.second_simulator import show
+from flows.case_files import case_folder
 from research.benchmarks.scenes.random_roads import random_crashes
+from sgcad_core.case.records import ActorInfo, RoadNetwork, Scenario
 from sgcad_core.errors import BadInput, SgcadError
 from sgcad_core.execution.compare_executions import judge
 from sgcad_core.execution.contact import realised
 from sgcad_core.execution.playback import execution_of, played
 from sgcad_core.interfaces import Simulator
+from sgcad_core.records.specs import Contact
 from sgcad_core.registry import plugin_class
 
 
@@ -58,10 +62,38 @@ def _results(options: argparse.Namespace, simulator: Simulator) -> dict[str, lis
         raise BadInput("nothing to judge: name a runs folder, or give --random N")
     results = {}
     if options.runs is not None:
-        results[options.runs.name] = list(itertools.islice(judged_runs(options.runs, simulator), options.most))
+        results[options.runs.name] = list(itertools.islice(_judged_runs(options.runs, simulator), options.most))
     if options.random:
         results["random"] = list(_random(options.random, simulator))
     return results
+
+
+def _judged_runs(folder: Path, simulator: Simulator) -> Iterator[dict[str, Any]]:
+    """result.json of every executed scenario file under a folder, with what the simulator makes of it now.
+
+    The files are believed: trajectories.csv is our playing, scenario.xosc and road.xodr are what is judged. Raises
+    BadInput where there is none, MissingTool.
+    """
+    files = sorted(folder.glob("**/scenario.xosc"))
+    cases = [file.parent for file in files if (file.parent / "trajectories.csv").is_file()]
+    if not cases:
+        raise BadInput(f"{folder}: no scenario.xosc with a trajectories.csv beside it; name a runs folder")
+    for case in cases:
+        yield _judged(case, simulator)
+
+
+def _judged(case: Path, simulator: Simulator) -> dict[str, Any]:
+    result: dict[str, Any] = json.loads((case / "result.json").read_text(encoding="utf-8"))
+    actors = tuple(ActorInfo.model_validate(actor) for actor in result["actors"])
+    declared = result["collision"]["declared"]
+    scenario = Scenario(
+        xosc=(case / "scenario.xosc").read_text(encoding="utf-8"),
+        actors=actors,
+        declared=Contact.model_validate(declared) if declared else None,
+    )
+    network = RoadNetwork(xodr=(case / "road.xodr").read_text(encoding="utf-8"))
+    ours = execution_of("file", scenario, case_folder.read_trajectories(case / "trajectories.csv"))
+    return result | {"judge": judge(simulator, ours, scenario, network).summary()}
 
 
 def _random(count: int, simulator: Simulator) -> Iterator[dict[str, Any]]:

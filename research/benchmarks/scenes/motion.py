@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from flows.case.case_folder import read_trajectories
+from flows.case_files.case_folder import read_trajectories
 from sgcad_core.case.records import Trajectory
 from sgcad_core.geometry.plane import Size
 from sgcad_core.kinds import actor_kind

@@ -85,15 +85,15 @@ def say(line: str) -> None:
 
 def real_case(place: Path) -> Path:
     """The folder of a bundled report, run once."""
-    from flows.batch import find_cases
-    from flows.case import chain
+    from flows.case import run_case
+    from flows.case_files import find_cases
     from sgcad_core import settings
     from sgcad_core.config import load
 
     settings.quiet_libraries()
     config = load("template.yaml", ("tracker=none",))
     (case, *_) = find_cases.cases_in([DEMO])
-    chain.run_case(config, case, place / "runs", find_cases.digest_of(case, config))
+    run_case.run_case(config, case, place / "runs", find_cases.digest_of(case, config))
     return place / "runs" / config.name / case.id
 
 
@@ -237,24 +237,24 @@ def give_prefect(cases: int, case_folder: str) -> None:
     from prefect.runtime import flow_run, task_run
     from prefect.task_runners import ThreadPoolTaskRunner
 
-    from flows.batch.prefect_case_task import hush_prefect
-    from flows.batch.prefect_tasks import Graph
-    from flows.case.case_end import showing
+    from flows.batch.prefect_case_end import case_reporter
+    from flows.batch.prefect_case_task import silence_prefect
+    from flows.batch.prefect_tasks import StepRuns
     from flows.case.step_log import Step
 
-    hush_prefect()
+    silence_prefect()
     result = json.loads((Path(case_folder) / "result.json").read_text(encoding="utf-8"))
 
     @task(persist_result=False)
-    def case(number: int) -> Graph:
-        graph = Graph(str(flow_run.id), str(task_run.id))
+    def case(number: int) -> StepRuns:
+        graph = StepRuns(str(flow_run.id), str(task_run.id))
         for name in STEPS:
             graph.tell(Step(name, time.time() - 0.1, time.time()))
         return graph
 
     @flow(name="load", task_runner=ThreadPoolTaskRunner(max_workers=2), persist_result=False)
     def load() -> str:
-        with showing(lasting=True) as shown:
+        with case_reporter(lasting=True) as shown:
             for future in [case.submit(number) for number in range(cases)]:
                 shown.artifact(Path(case_folder), "load/case", result, future.result())
         return str(flow_run.id)
@@ -288,9 +288,9 @@ def give_mlflow(cases: int, case: str, uri: str) -> None:
 
 def storage_load(cases: int, address: str, case: Path) -> Load:
     """Pack, upload and mark a case; in this process, so the storage's own work shows only in the wall time."""
-    from flows.study.shared_storage import Share, packed
+    from flows.study.shared_storage import SharedFolder, packed
 
-    share = Share(address)
+    share = SharedFolder(address)
     share.leave(case, ("load", "warm", "0" * 64), "generated", "run")
     cpu, started = time.process_time(), time.perf_counter()
     for number in range(cases):

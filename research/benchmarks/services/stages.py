@@ -69,10 +69,10 @@ def inside(cases: Path, out: Path, overrides: list[str]) -> None:
     """The measured process: one batch; prints the processor seconds of this process without its children."""
     from flows.batch import plan_batch as batches
     from flows.batch import progress_bar, run_batch, summary
-    from flows.batch.find_cases import cases_in
+    from flows.case_files.find_cases import cases_in
 
     made = batches.batch_of(cases_in([cases]), [Path("template.yaml")], out, overrides)
-    with progress_bar.watching(summary.Tally(made)) as watch:
+    with progress_bar.batch_progress(summary.Tally(made)) as watch:
         run_batch.evaluate(made, watch.ended)
     usage = resource.getrusage(resource.RUSAGE_SELF)
     sys.stdout.write(f"{usage.ru_utime + usage.ru_stime}\n")

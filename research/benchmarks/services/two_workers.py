@@ -142,7 +142,8 @@ def inside(words: Sequence[str], shards: int, jobs: int) -> None:
     """The process that starts the study: prints how long it took and how many cases were generated."""
     study, cases, out, address = words
     settings.quiet_libraries()
-    from flows.deploy.shards import Hosts, study_on_hosts
+    from flows.deploy.hosts_preflight import Hosts
+    from flows.deploy.shards import study_on_hosts
     from flows.study.plan import plan
     from flows.study.spec import load_study
 

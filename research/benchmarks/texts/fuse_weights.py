@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flows.case.model_calls import ask_of
+from flows.case.chain import ask_of
 from research.benchmarks.texts import answer_cache
 from research.rows.coded_incidents import Incident
 from research.rows.coded_rows import WAYS, allowed, incidents_of_part

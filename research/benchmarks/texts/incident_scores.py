@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from flows.case.case_folder import read_trajectories
+from flows.case_files.case_folder import read_trajectories
 from sgcad_core.case.records import ObservedContact, Trajectory
 from sgcad_core.execution.contact import first_with
 from sgcad_core.formats.sumo.net_xml import parse_net

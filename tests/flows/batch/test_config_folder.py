@@ -4,6 +4,7 @@ import pytest
 import yaml
 
 from flows.batch import config_folder
+from flows.case_files.case_folder import CONFIG
 from sgcad_core.config import load
 
 
@@ -26,10 +27,10 @@ def test_the_folder_holds_the_config_that_made_it_and_no_login(config_file, tmp_
     config = load(config_file(), ("seed=7",))
     config.raw["tracker"] = {"name": "mlflow", "uri": "http://me:secret@host:5000"}
     config_folder.write(tmp_path / "kit", config)
-    kept = yaml.safe_load((tmp_path / "kit" / config_folder.FILE).read_text())
+    kept = yaml.safe_load((tmp_path / "kit" / CONFIG).read_text())
     assert kept["seed"] == 7
     assert kept["tracker"]["uri"] == "http://host:5000"
-    assert load(tmp_path / "kit" / config_folder.FILE).seed == 7
+    assert load(tmp_path / "kit" / CONFIG).seed == 7
 
 
 def test_an_edited_config_is_told_before_its_results_are_replaced(config_file, tmp_path):

@@ -5,8 +5,8 @@ from concurrent.futures import CancelledError
 
 import pytest
 
-from flows.batch.find_cases import cases_in
-from flows.batch.plan_batch import Crew, Interrupted, batch_of
+from flows.batch.plan_batch import Interrupted, JobRunner, batch_of
+from flows.case_files.find_cases import cases_in
 from sgcad_core.asking.refine import run_at_once
 from sgcad_core.errors import ConfigError, MissingTool
 
@@ -25,10 +25,10 @@ def batch(tmp_path, config_file, reports):
 
 def work(batch):
     """Statuses of all cases, worked off without Prefect."""
-    plan, crew = batch.plan(), Crew(batch)
-    crew.begin(plan)
-    endings = {job.case.id: crew.finish(job, run_at_once) for job in plan}
-    crew.close()
+    plan, runner = batch.plan(), JobRunner(batch)
+    runner.begin(plan)
+    endings = {job.case.id: runner.finish(job, run_at_once) for job in plan}
+    runner.close()
     return endings
 
 
@@ -59,11 +59,11 @@ def test_running_again_skips_what_is_done_and_tries_failures_again(batch):
 
 def test_a_stopped_batch_leaves_no_failed_case(batch, tmp_path):
     made = batch(a="SLOW", b="SLOW", c="")
-    plan, crew = made.plan(), Crew(made)
-    crew.begin(plan)
-    crew.stop()
+    plan, runner = made.plan(), JobRunner(made)
+    runner.begin(plan)
+    runner.stop()
     with pytest.raises((Interrupted, CancelledError)):
-        crew.finish(plan[0], run_at_once)
+        runner.finish(plan[0], run_at_once)
     assert not list((tmp_path / "out" / "kit").glob("[abc]"))
 
 
@@ -94,16 +94,16 @@ def test_a_model_is_asked_in_this_process(batch, config_file):
         road_writer="testkit_asking", decoder="greedy", backbone={"name": "scripted", "answers": ["no", "ok"]}
     )
     made = batch(config=config, a="")
-    plan, crew = made.plan(), Crew(made)
-    crew.begin(plan)
+    plan, runner = made.plan(), JobRunner(made)
+    runner.begin(plan)
     names = []
 
     def note(name, turn):
         names.append(name)
         return turn()
 
-    assert not crew.began(plan[0])
-    assert crew.finish(plan[0], note).result["status"] == "generated"
+    assert not runner.began(plan[0])
+    assert runner.finish(plan[0], note).result["status"] == "generated"
     assert names == ["road[1]", "road[2]", "scenario[1]"]
 
 
@@ -120,11 +120,11 @@ def test_a_model_is_loaded_while_the_server_starts_and_a_fault_is_left_to_its_fi
 
     asked = {"name": "scripted", "answers": ["ok"]}
     made = batch(config=config_file(road_writer="testkit_asking", decoder="greedy", backbone=asked), a="")
-    plan, crew = made.plan(), Crew(made)
+    plan, runner = made.plan(), JobRunner(made)
     monkeypatch.setattr(type(plan[0].config.backbone), "load", load)
-    crew.begin(plan)
+    runner.begin(plan)
     assert loaded.wait(10)
-    assert crew.finish(plan[0], run_at_once).result["status"] == "generated"
+    assert runner.finish(plan[0], run_at_once).result["status"] == "generated"
     loaded.clear()
-    Crew(made).begin(plan)  # nothing is left to ask
+    JobRunner(made).begin(plan)  # nothing is left to ask
     assert not loaded.wait(0.2)

@@ -7,9 +7,9 @@ import pytest
 from rich.progress import Progress
 
 from flows.batch import progress_bar
-from flows.batch.progress_bar import Watch
+from flows.batch.progress_bar import BatchProgress
 from flows.batch.summary import Tally
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
 
 
 def job(case):
@@ -26,7 +26,7 @@ def tally(count):
 
 def test_the_bar_moves_with_every_attempt_of_a_model():
     bar = Progress()
-    watch = Watch(tally(2), 2, bar, bar.add_task("starting", total=2, done=0))
+    watch = BatchProgress(tally(2), 2, bar, bar.add_task("starting", total=2, done=0))
     seen = []
     for attempt in ("road[1]", "road[2]", "road[3]", "scenario[1]", "scenario[2]"):
         watch.turn(job("a"), attempt)
@@ -38,7 +38,7 @@ def test_the_bar_moves_with_every_attempt_of_a_model():
 
 
 def test_without_a_terminal_every_case_of_a_small_batch_has_a_line(capsys):
-    with progress_bar.watching(tally(2)) as watch:
+    with progress_bar.batch_progress(tally(2)) as watch:
         watch.turn(job("a"), "road[1]")
         watch.ended(job("a"), ending())
         watch.ended(job("b"), ending("refused"))
@@ -47,7 +47,7 @@ def test_without_a_terminal_every_case_of_a_small_batch_has_a_line(capsys):
 
 @pytest.mark.parametrize("count", [51, 400])
 def test_without_a_terminal_a_large_batch_has_few_lines_and_one_at_its_end(capsys, count):
-    with progress_bar.watching(tally(count)) as watch:
+    with progress_bar.batch_progress(tally(count)) as watch:
         for number in range(count):
             watch.ended(job(str(number)), ending())
     lines = capsys.readouterr().err.splitlines()

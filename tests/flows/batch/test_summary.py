@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import pytest
 
 from flows.batch import summary
-from flows.batch.prefect_case_task import Board
-from flows.batch.prefect_tasks import Graph
-from flows.case.chain import Ending
+from flows.batch.prefect_case_task import TaskBoard
+from flows.batch.prefect_tasks import StepRuns
+from flows.case.run_case import Ending
 from flows.case.step_log import Step
 
 CASES = 24
@@ -70,10 +70,10 @@ def test_a_long_batch_keeps_little_of_a_result():
 
 @pytest.mark.parametrize(("reused", "steps"), [(False, 3), (True, 0)])
 def test_an_ending_is_taken_once_and_its_steps_are_counted(reused, steps):
-    board = Board({}, crew=None)
+    board = TaskBoard({}, runner=None)
     board.endings["kit/a"] = Ending({}, reused=reused, steps=(Step("read", 0.0, 1.0), Step("road", 1.0, 2.0)))
-    board.graphs["kit/a"] = Graph("flow", "task", every=True)
+    board.step_runs["kit/a"] = StepRuns("flow", "task", every=True)
     ending, _ = board.take("kit/a")
     assert (ending.reused, board.steps) == (reused, steps)
     assert not board.endings
-    assert not board.graphs
+    assert not board.step_runs

@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 from flows.batch import track_cases
-from flows.batch.find_cases import Case
 from flows.batch.plan_batch import Job
-from flows.case.case_folder import CaseFolder
-from flows.case.chain import Ending
+from flows.case.run_case import Ending
+from flows.case_files.case_folder import CaseFolder
+from flows.case_files.find_cases import Case
 from sgcad_core.config import load
 from sgcad_core.errors import MissingTool
 from sgcad_core.interfaces import Tracker
@@ -69,24 +69,24 @@ def plan(tmp_path, reports, config_file):
 
 
 def test_begin_and_end_enclose_the_cases_and_a_second_batch_tells_nothing(plan, told):
-    with track_cases.following(plan):
+    with track_cases.tracked_batch(plan):
         for job in plan:
             track_cases.track(job, Ending(RESULT))
     assert told() == ["begin kit 2", "case c1", "case c2", "end kit True"]
     assert all(track_cases.tracked(job) for job in plan)
-    with track_cases.following(plan):
+    with track_cases.tracked_batch(plan):
         track_cases.track(plan[0], Ending(RESULT))
     assert told() == []
 
 
 def test_cases_are_logged_again_where_the_place_of_the_log_was_made_anew(plan, told, tmp_path):
-    with track_cases.following(plan):
+    with track_cases.tracked_batch(plan):
         for job in plan:
             track_cases.track(job, Ending(RESULT))
     told()
     (tmp_path / "place").touch()
     assert not any(track_cases.tracked(job) for job in plan)
-    with track_cases.following(plan):
+    with track_cases.tracked_batch(plan):
         for job in plan:
             track_cases.track(job, Ending(RESULT))
     assert told() == ["begin kit 2", "case c1", "case c2", "end kit True"]
@@ -94,14 +94,14 @@ def test_cases_are_logged_again_where_the_place_of_the_log_was_made_anew(plan, t
 
 def test_a_batch_that_is_interrupted_says_so_and_the_next_one_ends_it(plan, told):
     def interrupted():
-        with track_cases.following(plan):
+        with track_cases.tracked_batch(plan):
             track_cases.track(plan[0], Ending(RESULT))
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         interrupted()
     assert told() == ["begin kit 2", "case c1", "end kit False"]
-    with track_cases.following(plan):
+    with track_cases.tracked_batch(plan):
         for job in plan:
             track_cases.track(job, Ending(RESULT))
     assert told() == ["begin kit 2", "case c2", "end kit True"]
@@ -109,7 +109,7 @@ def test_a_batch_that_is_interrupted_says_so_and_the_next_one_ends_it(plan, told
 
 def test_a_batch_that_a_fault_ends_says_which(plan, told):
     def broken():
-        with track_cases.following(plan):
+        with track_cases.tracked_batch(plan):
             raise MissingTool("netconvert is not installed: pip install eclipse-sumo")
 
     with pytest.raises(MissingTool, match="netconvert"):
@@ -118,13 +118,13 @@ def test_a_batch_that_a_fault_ends_says_which(plan, told):
 
 
 def test_a_batch_killed_after_its_last_case_is_ended_by_the_next(plan, told):
-    killed = track_cases.following(plan)  # never left, as kill -9 leaves it
+    killed = track_cases.tracked_batch(plan)  # never left, as kill -9 leaves it
     killed.__enter__()
     for job in plan:
         track_cases.track(job, Ending(RESULT))
     assert not any(track_cases.tracked(job) for job in plan)
     told()
-    with track_cases.following(plan):
+    with track_cases.tracked_batch(plan):
         pass
     assert told() == ["begin kit 2", "end kit True"]
     assert all(track_cases.tracked(job) for job in plan)
@@ -135,9 +135,12 @@ def test_a_tracker_that_cannot_be_told_ends_no_batch_and_is_told_again(plan, tol
         track_cases.track(job, Ending(RESULT))
     broken = plan[0].config.tracker.model_copy(update={"fails": True})
     jobs = [Job(j.config.model_copy(update={"tracker": broken}), j.case, j.digest, j.folder) for j in plan]
-    with track_cases.following(jobs):
+    with track_cases.tracked_batch(jobs):
         pass
-    assert "keeps the tracker's database locked: end it (`fuser FILE` names it); then run again" in caplog.text
+    assert (
+        "keeps the tracker's database locked: end it (`fuser FILE` names it); then run the same command again"
+        in caplog.text
+    )
     assert not any(track_cases.tracked(job) for job in jobs)
 
 

@@ -40,9 +40,9 @@ def test_a_contact_that_is_not_the_declared_one_is_told_beside_it(collision, lin
 @pytest.mark.parametrize(
     ("basis", "realised", "line"),
     [
-        ("default", True, "nobody touches: V1 and V2 come to 0.6 m, the usual distance of a near crash"),
-        ("told", True, "nobody touches: V1 and V2 come to 0.6 m, as the report tells"),
-        ("told", False, "nobody touches: V1 and V2 come to 0.6 m, 1.5 m was wanted"),
+        ("default", True, "no contact: V1 and V2 come to 0.6 m, the usual distance of a near crash"),
+        ("told", True, "no contact: V1 and V2 come to 0.6 m, as the report tells"),
+        ("told", False, "no contact: V1 and V2 come to 0.6 m, 1.5 m was wanted"),
     ],
 )
 def test_of_a_near_crash_it_is_told_how_near_they_come(basis, realised, line):

@@ -5,9 +5,10 @@ import json
 
 import pytest
 
-from flows.batch.find_cases import Case
-from flows.case import case_folder
-from flows.case.chain import CaseRun, run_case
+from flows.case.chain import CaseRun
+from flows.case.run_case import run_case
+from flows.case_files import case_folder
+from flows.case_files.find_cases import Case
 from plugins.backbone.scripted import Scripted
 from sgcad_core import settings
 from sgcad_core.config import load
@@ -180,7 +181,7 @@ def test_a_second_opinion_is_asked_once_and_read_with_the_rules(run, monkeypatch
     )
     seen = []
     monkeypatch.setattr(
-        "flows.case.write_case.result_of", lambda record: seen.append(record.reading) or {"status": "generated"}
+        "flows.case.run_case.result_of", lambda record: seen.append(record.reading) or {"status": "generated"}
     )
     backbone = {"name": "scripted", "answers": [SECOND]}
     source = tmp_path / "c1.txt"

@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from flows.batch.find_cases import Case
-from flows.case.chain import run_case
 from flows.case.explain import explain
+from flows.case.run_case import run_case
+from flows.case_files.find_cases import Case
 from sgcad_core.config import load
 from sgcad_core.errors import BadInput
 from sgcad_core.settings import ROOT

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from flows.batch import config_folder, find_cases
-from flows.batch.find_cases import Case
+from flows.batch import config_folder
 from flows.case import person_facts, revise_case
-from flows.case.chain import run_case
+from flows.case.run_case import run_case
+from flows.case_files import find_cases
+from flows.case_files.find_cases import Case
 from flows.desk import export_edits
 from sgcad_core.config import load
 from sgcad_core.errors import BadInput, WrongEdit
@@ -225,5 +226,5 @@ def test_what_was_mended_is_exported_as_truth_that_the_mended_run_meets(tmp_path
 
 
 def test_nothing_mended_is_nothing_to_export(tmp_path, case):
-    with pytest.raises(BadInput, match="nobody has changed a fact"):
+    with pytest.raises(BadInput, match="no fact of these cases was changed"):
         export_edits.export(case.parent, tmp_path / "data")

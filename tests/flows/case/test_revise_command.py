@@ -15,10 +15,13 @@ def sgcad(*words):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["revise", "nowhere"], "give --set FIELD=VALUE"),
+        (["revise", "nowhere"], "give one of --set FIELD=VALUE"),
         (["revise", "nowhere", "--set", "x"], "expected FIELD=VALUE"),
         (["revise", "nowhere", "--set", "near_crash=true"], "give the folder of a finished case"),
-        (["revise", "nowhere", "--undo", "--list"], "one of the three"),
+        (
+            ["revise", "nowhere", "--undo", "--list"],
+            "give one of --set FIELD=VALUE (several are allowed), --undo or --list",
+        ),
         (["revise", "nowhere", "--later", "--set", "near_crash=true"], "the report is gone"),
         (["desk", "export", "nowhere", "--out", "x"], "give the folder of one config"),
     ],

@@ -4,9 +4,9 @@ import time
 
 import pytest
 
-from flows.batch.find_cases import Case
-from flows.case.chain import run_case
+from flows.case.run_case import run_case
 from flows.case.step_log import Steps, judged, waits_for
+from flows.case_files.find_cases import Case
 from sgcad_core.case.records import Attempt, Finding
 from sgcad_core.config import load
 

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from flows.batch.find_cases import cases_in
-from flows.batch.plan_batch import Crew, batch_of
+from flows.batch.plan_batch import JobRunner, batch_of
+from flows.case_files.find_cases import cases_in
 from flows.deploy import nightly
 from flows.deploy.nightly import Tolerance, accept_latest, drops, figures_of
 from sgcad_core.asking.refine import run_at_once
@@ -53,11 +53,11 @@ def measured(reports, config_file, tmp_path):
     """A finished batch; what the flow does around it is under test."""
     folder = reports(a="", b="REFUSE", c="RAISE")
     batch = batch_of(cases_in([folder]), [config_file()], tmp_path / "out", jobs=1)
-    plan, crew = batch.plan(), Crew(batch)
-    crew.begin(plan)
+    plan, runner = batch.plan(), JobRunner(batch)
+    runner.begin(plan)
     for job in plan:
-        crew.finish(job, run_at_once)
-    crew.close()
+        runner.finish(job, run_at_once)
+    runner.close()
     return batch
 
 

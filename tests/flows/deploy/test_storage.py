@@ -56,5 +56,5 @@ def test_a_file_written_anew_during_a_move_on_a_store_without_renames_stays():
 
 
 def test_an_address_of_no_kind_is_refused():
-    with pytest.raises(ConfigError, match="nowhere://x: no address that can be opened"):
+    with pytest.raises(ConfigError, match="nowhere://x: cannot be opened"):
         Place("nowhere://x")

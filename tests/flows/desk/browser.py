@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import contextmanager
 from typing import Any
 
-from deploy.pages import Browser, browsing
+from research.checks.mlflow_pages import Browser, browsing
 
 WAIT_S = 60.0
 KEYS = {"Enter": 13, "Escape": 27, "Tab": 9, "ArrowLeft": 37, "ArrowRight": 39, " ": 32}

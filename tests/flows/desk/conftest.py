@@ -9,9 +9,9 @@ import pytest
 from starlette.testclient import TestClient
 
 from flows.batch.config_folder import write
-from flows.batch.find_cases import cases_in
 from flows.batch.plan_batch import batch_of
-from flows.case.chain import run_case
+from flows.case.run_case import run_case
+from flows.case_files.find_cases import cases_in
 from flows.desk.app import application
 from sgcad_core import settings
 from sgcad_core.asking.refine import run_at_once

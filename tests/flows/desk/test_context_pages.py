@@ -26,7 +26,7 @@ def test_the_list_shows_every_case_with_what_it_came_to(client, config):
 def test_filters_and_search_are_addresses(client):
     assert "left-turn-at-signal" not in client.get("/?kind=rear-end").text
     assert "1 case <span>of 3</span>" in client.get("/?text=left-turn").text
-    assert "No case is like that" in client.get("/?text=nothing").text
+    assert "No case matches the filters" in client.get("/?text=nothing").text
 
 
 def test_an_empty_folder_says_how_to_fill_it(tmp_path):

@@ -10,7 +10,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from flows.desk.app import application
-from flows.desk.command import Asked, address_of, gate_of
+from flows.desk.command import DeskOptions, address_of, gate_of
 from flows.desk.guard import Gate
 from sgcad_core.errors import ConfigError
 from tests.flows.desk.conftest import Page, foreign
@@ -44,7 +44,7 @@ def test_a_request_for_another_host_learns_nothing(folder, host):
 
 
 def test_beyond_this_machine_an_address_is_a_name_and_a_foreign_name_is_none(folder):
-    names = gate_of(Asked(folder, EVERYWHERE, 1, names=("crash.example",)))
+    names = gate_of(DeskOptions(folder, EVERYWHERE, 1, names=("crash.example",)))
     client = TestClient(application(folder, names), base_url="http://192.168.1.7")
     assert client.get("/").status_code == 401
     assert client.get("/", headers={"host": "crash.example"}).status_code == 401
@@ -52,12 +52,12 @@ def test_beyond_this_machine_an_address_is_a_name_and_a_foreign_name_is_none(fol
 
 
 def test_beyond_this_machine_a_token_is_made_and_on_it_none_is_needed(folder):
-    away, here = gate_of(Asked(folder, EVERYWHERE, 1)), gate_of(Asked(folder, "127.0.0.1", 1))
+    away, here = gate_of(DeskOptions(folder, EVERYWHERE, 1)), gate_of(DeskOptions(folder, "127.0.0.1", 1))
     assert len(away.token) >= 32
     assert here.token == ""
     assert address_of("10.0.0.1", 80, away.token).endswith(f"/?token={away.token}")
     with pytest.raises(ConfigError, match="--token: 5 characters can be guessed; give 16 or more"):
-        gate_of(Asked(folder, "127.0.0.1", 1, token="x" * 5))
+        gate_of(DeskOptions(folder, "127.0.0.1", 1, token="x" * 5))
 
 
 def test_the_token_becomes_a_cookie_at_the_first_visit_and_leaves_the_address(folder):
@@ -158,9 +158,9 @@ def test_a_wrong_folder_a_case_and_a_taken_port_are_told_with_their_remedy(folde
     code, said = desk_says(folder / "none")
     assert (code, "no such folder; make results first" in said) == (2, True)
     code, said = desk_says(folder / "kit" / "c1")
-    assert (code, f"is one case; give the folder above, such as {folder}" in said) == (2, True)
+    assert (code, f"is one case; give the results folder above it, such as {folder}" in said) == (2, True)
     with socket.create_server(("127.0.0.1", 0)) as taken:
         code, said = desk_says(folder, "--port", taken.getsockname()[1])
-    assert (code, "--port 0 takes a free one" in said) == (2, True)
+    assert (code, "--port 0 selects a free port" in said) == (2, True)
     code, said = desk_says(folder, "--mlflow", "javascript:alert(1)")
     assert (code, "no web address" in said) == (2, True)

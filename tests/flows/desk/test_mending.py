@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from flows.case import revise_case
-from flows.desk.mending import Changed, Mender, Order
+from flows.desk.index import version_of
+from flows.desk.mending import CaseChanged, Mender, Order
 from flows.desk.views import edit_form
-from flows.desk.views.case_version import version_of
 from sgcad_core.errors import SimulationFailed
 
 CASE = "left-turn-at-signal"
@@ -46,7 +46,7 @@ def test_an_edit_is_planned_simulated_shown_signed_and_taken_back(page, key, con
     assert page(key).change("undo").status_code == 200
     assert lanes(config, "N") == 3
     assert "Changed by people" not in page(key).text
-    assert page(key).change("undo").json()["text"].endswith("nobody has changed a fact of it")
+    assert page(key).change("undo").json()["text"].endswith("none of its facts was changed")
 
 
 @pytest.mark.slow
@@ -129,7 +129,7 @@ def test_the_death_of_the_process_changes_nothing_and_kills_nothing(config):
 
 def test_a_change_that_was_overtaken_starts_no_process(tmp_path):
     mender = Mender("no.such:module")
-    with pytest.raises(Changed, match="make it again"):
+    with pytest.raises(CaseChanged, match="make it again"):
         mender.change(Order("revise", tmp_path), "another")
 
 

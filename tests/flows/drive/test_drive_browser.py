@@ -5,9 +5,9 @@ import shutil
 
 import pytest
 
-from deploy.pages import BROWSERS
-from flows.batch.find_cases import Case
-from flows.case.chain import run_case
+from flows.case.run_case import run_case
+from flows.case_files.find_cases import Case
+from research.checks.mlflow_pages import BROWSERS
 from sgcad_core.config import load
 from sgcad_core.settings import ROOT
 from tests.flows.desk.browser import walking

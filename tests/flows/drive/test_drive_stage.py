@@ -2,9 +2,9 @@
 
 import json
 
-from flows.batch.find_cases import Case
 from flows.batch.track_cases import params_of
-from flows.case.chain import run_case
+from flows.case.run_case import run_case
+from flows.case_files.find_cases import Case
 from plugins.tracker.figures import case_figures
 from sgcad_core.config import load
 

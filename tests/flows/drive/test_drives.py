@@ -6,7 +6,7 @@ import math
 import pytest
 from typer.testing import CliRunner
 
-from flows.case import case_folder
+from flows.case_files import case_folder
 from flows.cli import app
 from flows.drive import table
 from flows.drive.run_drive import Order, drive_folders

@@ -121,7 +121,7 @@ def test_an_execution_without_contact_has_no_contact_mark():
 def test_nothing_executed_cannot_be_shown():
     made = view()
     bare = CaseRecord("c", "k", made.record.outcomes)
-    with pytest.raises(ValueError, match="case c: nothing was executed"):
+    with pytest.raises(ValueError, match="case c: it was not executed"):
         View.of(bare, made.report, {}, {})
 
 

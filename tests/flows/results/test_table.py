@@ -11,8 +11,8 @@ from rich.console import Console
 
 from flows.results import measures, writing
 from flows.results.layouts import LAYOUTS
-from flows.results.published import publication
-from flows.results.refusal import counts
+from flows.results.table import refusal_counts
+from flows.study.published import publication
 from flows.study.spec import load_study
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
@@ -108,7 +108,7 @@ def test_precision_and_recall_of_refusals_follow_from_the_levels(tables):
 
 
 def test_only_what_is_declared_should_be_refused():
-    assert counts([("modal_conflict", 1.0), ("critical_depletion", 1.0), ("semantic_noise", 0.0)]) == {
+    assert refusal_counts([("modal_conflict", 1.0), ("critical_depletion", 1.0), ("semantic_noise", 0.0)]) == {
         "rightly": 1.0, "wrongly": 1.0, "refusals": 2.0, "due": 1.0, "carried": 2.0,
     }  # fmt: skip
 

@@ -5,7 +5,8 @@ import json
 import pytest
 import yaml
 
-from flows.study.plan import dataset_digest, plan
+from flows.case_files.find_cases import dataset_digest
+from flows.study.plan import plan
 from flows.study.spec import load_study
 from sgcad_core.errors import ConfigError
 
@@ -93,7 +94,7 @@ def test_the_document_says_what_a_reader_needs(study, config_file, reports, tmp_
 
 
 def test_a_data_set_is_its_content(study, config_file, reports):
-    from flows.batch.find_cases import cases_in
+    from flows.case_files.find_cases import cases_in
 
     found = cases_in([reports(a="", b="x")])
     before = dataset_digest(found)

@@ -22,7 +22,7 @@ def begun(tmp_path, config_file, reports):
 
 
 def test_a_study_goes_on_by_its_name_with_what_it_was_given(begun, tmp_path):
-    known = resume.before(Path("kits"), tmp_path / "out")
+    known = resume.former_arguments(Path("kits"), tmp_path / "out")
     assert (known.file, known.truth, known.overrides) == (begun, tmp_path, ("seed=3",))
     assert resume.cases_of(known, ()) == (tmp_path / "cases",)
     assert resume.cases_of(known, (tmp_path,)) == (tmp_path,)
@@ -32,12 +32,12 @@ def test_another_study_of_that_name_begins_anew(begun, tmp_path):
     other = tmp_path / "elsewhere" / "kits.yaml"
     other.parent.mkdir()
     shutil.copy(begun, other)
-    assert resume.before(other, tmp_path / "out") == resume.Before(other)
-    assert resume.before(Path("nothing"), tmp_path / "out") == resume.Before(Path("nothing"))
+    assert resume.former_arguments(other, tmp_path / "out") == resume.FormerArguments(other)
+    assert resume.former_arguments(Path("nothing"), tmp_path / "out") == resume.FormerArguments(Path("nothing"))
 
 
 def test_cases_that_are_gone_are_told(begun, tmp_path):
     shutil.rmtree(tmp_path / "cases")
-    known = resume.before(Path("kits"), tmp_path / "out")
-    with pytest.raises(ConfigError, match=r"the study was begun with .*cases, which is gone: name the folder"):
+    known = resume.former_arguments(Path("kits"), tmp_path / "out")
+    with pytest.raises(ConfigError, match=r"the study was started with .*cases, which is gone: name the folder"):
         resume.cases_of(known, ())

@@ -13,7 +13,7 @@ import psutil
 import pytest
 import yaml
 
-from flows.batch.plan_batch import Crew
+from flows.batch.plan_batch import JobRunner
 from flows.study import run_study
 from flows.study.plan import plan
 from flows.study.spec import load_study
@@ -77,11 +77,11 @@ def figures(folder):
 @pytest.mark.slow
 def test_a_killed_study_goes_on_where_it_stopped_and_no_number_changes(study, tmp_path):
     whole = plan(load_study(study), tmp_path / "whole")
-    crew = Crew(whole.batch)
-    crew.begin(whole.jobs)
+    runner = JobRunner(whole.batch)
+    runner.begin(whole.jobs)
     for job in whole.jobs:
-        crew.finish(job, run_at_once)
-    crew.close()
+        runner.finish(job, run_at_once)
+    runner.close()
 
     folder = tmp_path / "killed" / "studies" / "resume"
     first = start(study, tmp_path / "killed")
@@ -114,16 +114,16 @@ def test_what_arms_share_is_computed_once(tmp_path, config_file, reports):
     arms = [{"name": f"k{n}", "config": "kit.yaml", "set": [f"seed={n}"]} for n in range(3)]
     file.write_text(yaml.safe_dump({"title": "Kits", "arms": arms}))
     made = plan(load_study(file), tmp_path / "out", cases=[reports(a="", b="REFUSE")], jobs=1)
-    crew = Crew(made.batch)
-    crew.begin(made.jobs)
-    results = {job.name: crew.finish(job, run_at_once).result for job in made.jobs}
-    crew.close()
+    runner = JobRunner(made.batch)
+    runner.begin(made.jobs)
+    results = {job.name: runner.finish(job, run_at_once).result for job in made.jobs}
+    runner.close()
     assert [results[f"k{n}/a"]["shared"] for n in range(3)] == [[], *[["read", "road", "scenario", "simulate"]] * 2]
     assert [results[f"k{n}/b"]["shared"] for n in range(3)] == [[], ["read", "road"], ["read", "road"]]
     assert {results[f"k{n}/b"]["status"] for n in range(3)} == {"refused"}
     shutil.rmtree(made.folder / ".stages")
     again = plan(load_study(file), tmp_path / "out", cases=[tmp_path / "cases"], jobs=1)
-    assert all(Crew(again.batch).reusable(job) for job in again.jobs), "finished cases need no shelf"
+    assert all(JobRunner(again.batch).reusable(job) for job in again.jobs), "finished cases need no shelf"
 
 
 def test_a_fresh_study_forgets_what_was_shared(tmp_path, config_file, reports, monkeypatch):

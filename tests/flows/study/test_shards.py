@@ -12,15 +12,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flows.batch import find_cases
 from flows.batch import plan_batch as batches
-from flows.batch.find_cases import Case
-from flows.batch.plan_batch import Crew, Job
-from flows.case.case_folder import CaseFolder
+from flows.batch.plan_batch import Job, JobRunner
+from flows.case_files import find_cases
+from flows.case_files.case_folder import CaseFolder
+from flows.case_files.find_cases import Case
 from flows.study.shard_lease import Lease, LeaseLost, lease_name
-from flows.study.shards import Shard, Work, cut, lay_out, work_on
-from flows.study.shared_storage import Share, Unreachable
-from flows.study.watch_shards import FRUITLESS, PATIENCE_S, START_S, Watch, follow
+from flows.study.shards import Shard, ShardJob, cut, lay_out, run_shard
+from flows.study.shared_storage import SharedFolder, Unreachable
+from flows.study.watch_shards import FRUITLESS, PATIENCE_S, START_S, ShardWatch, watch_until_done
 from sgcad_core.asking.refine import run_at_once
 from sgcad_core.errors import BadInput, ConfigError
 
@@ -31,7 +31,7 @@ IN_THREADS = {"backbone": {"name": "scripted", "answers": ["-"]}, "decoder": "gr
 
 @pytest.fixture
 def share():
-    return Share(f"memory://{uuid.uuid4()}/study")
+    return SharedFolder(f"memory://{uuid.uuid4()}/study")
 
 
 @pytest.fixture
@@ -42,10 +42,10 @@ def plan(tmp_path, config_file, reports):
     return batches.batch_of(find_cases.cases_in([folder]), files, tmp_path / "home").plan()
 
 
-def run(plan, crew, hand_in):
-    """What `flows.batch.evaluate_flow.drive` does, without Prefect's view of it."""
+def run(plan, runner, hand_in):
+    """What `flows.batch.batch_flow.submit_and_follow` does, without Prefect's view of it."""
     for job in plan:
-        hand_in(job, crew.finish(job, run_at_once), "")
+        hand_in(job, runner.finish(job, run_at_once), "")
 
 
 class Stop(Exception):
@@ -55,11 +55,11 @@ class Stop(Exception):
 def run_until(count):
     """A run whose host dies after so many cases."""
 
-    def limited(plan, crew, hand_in):
+    def limited(plan, runner, hand_in):
         for number, job in enumerate(plan):
             if number == count:
                 raise Stop
-            hand_in(job, crew.finish(job, run_at_once), "")
+            hand_in(job, runner.finish(job, run_at_once), "")
 
     return limited
 
@@ -107,11 +107,11 @@ def test_shards_hold_every_job_once_all_arms_of_a_case_together_and_are_even(mad
 
 # ------------------------------------------------------------------ one shard
 def test_results_come_home_as_one_machine_makes_them(plan, share, tmp_path):
-    crew = Crew(batches.Batch((), (), plan[0].folder.out, 1, 1))
-    run(plan, crew, lambda *_: None)
+    runner = JobRunner(batches.Batch((), (), plan[0].folder.out, 1, 1))
+    run(plan, runner, lambda *_: None)
     shards = lay_out(share, "s", plan, 2)
     for number in range(len(shards)):
-        tally = work_on(Shard(share, number, f"run{number}", tmp_path / f"host{number}"), run, 1)
+        tally = run_shard(Shard(share, number, f"run{number}", tmp_path / f"host{number}"), run, 1)
         assert (tally.done, tally.found, tally.doubled, tally.failed) == (4, 0, 0, 0)
     for name in share.names("done/"):
         mark = share.mark(name)
@@ -124,9 +124,9 @@ def test_results_come_home_as_one_machine_makes_them(plan, share, tmp_path):
 def test_a_shard_taken_again_does_only_what_has_no_mark(plan, share, tmp_path):
     lay_out(share, "s", plan, 1)
     with pytest.raises(Stop):
-        work_on(Shard(share, 0, "first", tmp_path / "host1"), run_until(3), 1)
+        run_shard(Shard(share, 0, "first", tmp_path / "host1"), run_until(3), 1)
     assert len(share.names("done/")) == 3
-    tally = work_on(Shard(share, 0, "second", tmp_path / "host2"), run, 1)
+    tally = run_shard(Shard(share, 0, "second", tmp_path / "host2"), run, 1)
     assert (tally.done, tally.found) == (5, 3)
     assert {share.mark(name).run for name in share.names("done/")} == {"first", "second"}
 
@@ -134,15 +134,15 @@ def test_a_shard_taken_again_does_only_what_has_no_mark(plan, share, tmp_path):
 def test_a_case_is_not_done_before_its_mark(plan, share, tmp_path):
     lay_out(share, "s", plan, 1)
     share.write(f"results/one/c1/{uuid.uuid4()}.tar.gz", b"half an upload")
-    assert work_on(Shard(share, 0, "run", tmp_path / "host"), run, 1).done == 8
+    assert run_shard(Shard(share, 0, "run", tmp_path / "host"), run, 1).done == 8
 
 
 def test_who_marks_second_takes_his_object_away(plan, share, tmp_path):
     lay_out(share, "s", plan, 1)
     shard = Shard(share, 0, "early", tmp_path / "host")
     jobs, _ = shard.jobs()
-    crew = Crew(batches.Batch((jobs[0].config,), (), tmp_path / "host", 1, 1))
-    ending = crew.finish(jobs[0], run_at_once)
+    runner = JobRunner(batches.Batch((jobs[0].config,), (), tmp_path / "host", 1, 1))
+    ending = runner.finish(jobs[0], run_at_once)
     lease = Lease(share, 0, "early")
     assert shard.hand_in(lease, jobs[0], ending) == "done"
     assert replace(shard, run="late").hand_in(Lease(share, 0, "late"), jobs[0], ending) == "doubled"
@@ -152,16 +152,16 @@ def test_who_marks_second_takes_his_object_away(plan, share, tmp_path):
 def test_a_run_of_an_earlier_plan_leaves_and_takes_no_lease(plan, share, tmp_path):
     lay_out(share, "s", plan, 2, laying="first")
     lay_out(share, "s", plan, 1, laying="second")
-    with pytest.raises(LeaseLost, match="laid out anew"):
-        work_on(Shard(share, 0, "old", tmp_path / "host", "first"), run, 1)
+    with pytest.raises(LeaseLost, match="started again with other shards"):
+        run_shard(Shard(share, 0, "old", tmp_path / "host", "first"), run, 1)
     assert share.names("leases/") == set()
-    assert work_on(Shard(share, 0, "new", tmp_path / "host", "second"), run, 1).done == 8
+    assert run_shard(Shard(share, 0, "new", tmp_path / "host", "second"), run, 1).done == 8
 
 
 def test_a_host_with_other_code_refuses(plan, share, tmp_path):
     lay_out(share, "s", [replace(job, digest="0" * 64) for job in plan], 1)
     with pytest.raises(ConfigError, match="install the same version"):
-        work_on(Shard(share, 0, "run", tmp_path / "host"), run, 1)
+        run_shard(Shard(share, 0, "run", tmp_path / "host"), run, 1)
 
 
 def test_a_report_that_is_one_file_arrives_as_one_file(config_file, share, tmp_path):
@@ -176,7 +176,7 @@ def test_a_report_that_is_one_file_arrives_as_one_file(config_file, share, tmp_p
 
 def test_a_share_belongs_to_one_study(plan, share):
     lay_out(share, "s", plan)
-    with pytest.raises(ConfigError, match="give each its own folder"):
+    with pytest.raises(ConfigError, match="give each study its own folder"):
         lay_out(share, "t", plan)
 
 
@@ -184,11 +184,11 @@ def test_failed_cases_are_tried_again_by_the_next_study_only(config_file, report
     folder = reports(c1="RAISE", c2="")
     plan = batches.batch_of(find_cases.cases_in([folder]), [config_file(**IN_THREADS)], tmp_path / "home").plan()
     lay_out(share, "s", plan, 1)
-    tally = work_on(Shard(share, 0, "run", tmp_path / "host"), run, 1)
+    tally = run_shard(Shard(share, 0, "run", tmp_path / "host"), run, 1)
     assert (tally.done, tally.failed) == (1, 1)
-    assert work_on(Shard(share, 0, "again", tmp_path / "host"), run, 1).found == 2
+    assert run_shard(Shard(share, 0, "again", tmp_path / "host"), run, 1).found == 2
     lay_out(share, "s", plan, 1)
-    assert work_on(Shard(share, 0, "next", tmp_path / "host"), run, 1).failed == 1
+    assert run_shard(Shard(share, 0, "next", tmp_path / "host"), run, 1).failed == 1
 
 
 # ------------------------------------------------------------------ storage
@@ -204,10 +204,10 @@ def test_an_object_that_is_not_what_its_mark_says_is_refused(plan, share, tmp_pa
 
 
 def test_a_mark_cut_off_in_writing_is_no_mark(tmp_path):
-    share = Share(f"file://{tmp_path}/study")
+    share = SharedFolder(f"file://{tmp_path}/study")
     folder = tmp_path / "case"
     folder.mkdir()
-    work = Work("one", "c1", "d" * 64)
+    work = ShardJob("one", "c1", "d" * 64)
     share.write(work.mark, b'{"arm": "on')
     assert share.mark(work.mark) is None
     assert share.leave(folder, ("one", "c1", work.digest), "generated", "run")
@@ -216,7 +216,7 @@ def test_a_mark_cut_off_in_writing_is_no_mark(tmp_path):
 
 @pytest.mark.parametrize("address", ["memory://{}/s", "file://{}/s", "{}/plain"])
 def test_a_share_keeps_what_it_is_given(address, tmp_path):
-    share = Share(address.format(tmp_path))
+    share = SharedFolder(address.format(tmp_path))
     share.write("cases/a b #1/räder.txt", b"x")
     share.write("cases/c.txt", b"y")
     assert share.names("cases/") == {"cases/a b #1/räder.txt", "cases/c.txt"}
@@ -230,7 +230,7 @@ def test_a_share_keeps_what_it_is_given(address, tmp_path):
 
 def test_a_storage_that_cannot_be_reached_is_named():
     with pytest.raises(Unreachable, match="nosuch://x"):
-        Share("nosuch://x").names("done/")
+        SharedFolder("nosuch://x").names("done/")
 
 
 # ------------------------------------------------------------------ lease
@@ -241,7 +241,7 @@ def test_a_lease_that_was_given_to_another_run_is_lost(share):
     first.check()
     second.take()
     first.beat()
-    with pytest.raises(LeaseLost, match="flow run second's by now"):
+    with pytest.raises(LeaseLost, match="was given to flow run second"):
         first.check()
     second.beat()
     second.check()
@@ -285,7 +285,7 @@ def desk():
 def watch(plan, share, desk):
     shards = lay_out(share, "s", plan, 1)
     home = []
-    made = Watch(share, desk, shards, home.append)
+    made = ShardWatch(share, desk, shards, home.append)
     made.home = home
     return made
 
@@ -339,12 +339,12 @@ def test_the_lease_of_an_earlier_run_is_no_sign_of_life(watch, desk, share):
 def test_every_mark_comes_home_once_and_then_the_watch_ends(watch, desk, share, tmp_path):
     watch.step(0.0)
     with pytest.raises(Stop):
-        work_on(Shard(share, 0, "run0", tmp_path / "host"), run_until(3), 1)
+        run_shard(Shard(share, 0, "run0", tmp_path / "host"), run_until(3), 1)
     desk.runs["run0"] = ("ended", "Crashed: host gone")
     assert watch.step(1.0)
     assert len(watch.home) == 3
     assert watch.again == ["shard 0: ended with 5 jobs left (Crashed: host gone)"]
-    work_on(Shard(share, 0, "run1", tmp_path / "host"), run, 1)
+    run_shard(Shard(share, 0, "run1", tmp_path / "host"), run, 1)
     assert not watch.step(2.0)
     assert len({(mark.arm, mark.case) for mark in watch.home}) == len(watch.home) == 8
 
@@ -362,13 +362,13 @@ def test_a_shard_that_comes_to_nothing_ends_the_study_with_its_last_words(watch,
 def test_a_watch_begun_again_goes_on_where_the_marks_are(plan, share, desk, tmp_path):
     lay_out(share, "s", plan, 1)
     with pytest.raises(Stop):
-        work_on(Shard(share, 0, "gone", tmp_path / "host"), run_until(3), 1)
+        run_shard(Shard(share, 0, "gone", tmp_path / "host"), run_until(3), 1)
     home = []
-    watch = Watch(share, desk, lay_out(share, "s", plan, 2), home.append)
+    watch = ShardWatch(share, desk, lay_out(share, "s", plan, 2), home.append)
     assert watch.step(0.0)
     assert len(home) == 3
     for number in range(2):
-        work_on(Shard(share, number, f"run{number}", tmp_path / "host"), run, 1)
+        run_shard(Shard(share, number, f"run{number}", tmp_path / "host"), run, 1)
     assert not watch.step(1.0)
     assert len(home) == 8
 
@@ -384,9 +384,9 @@ def test_a_short_cut_is_waited_for_and_a_long_one_is_told():
             return False
 
     ticks = iter(range(1000))
-    follow(Cut(), lambda: float(next(ticks)), lambda: None, cut_s=100.0)
+    watch_until_done(Cut(), lambda: float(next(ticks)), lambda: None, cut_s=100.0)
     with pytest.raises(Unreachable, match="gone"):
-        follow(Cut(), lambda: float(next(ticks)), lambda: None, cut_s=1.0)
+        watch_until_done(Cut(), lambda: float(next(ticks)), lambda: None, cut_s=1.0)
 
 
 def test_a_crew_has_no_more_cases_on_their_way_than_it_was_told(plan):
@@ -406,8 +406,8 @@ def test_a_crew_has_no_more_cases_on_their_way_than_it_was_told(plan):
 
         return turn
 
-    crew = Crew(batches.Batch((), (), plan[0].folder.out, 2, 1))
+    runner = JobRunner(batches.Batch((), (), plan[0].folder.out, 2, 1))
     with ThreadPoolExecutor(8) as threads:
-        endings = list(threads.map(lambda job: crew.finish(job, watched(job)), plan))
+        endings = list(threads.map(lambda job: runner.finish(job, watched(job)), plan))
     assert len(endings) == 8
     assert 1 <= most[0] <= 2

@@ -24,8 +24,8 @@ def pattern(name):
 @pytest.fixture(scope="module")
 def logged(tmp_path_factory):
     """Figures of a real case: a demo report through the real chain, with a grounded answer added."""
-    from flows.batch.find_cases import Case
-    from flows.case.chain import run_case
+    from flows.case.run_case import run_case
+    from flows.case_files.find_cases import Case
     from sgcad_core.config import load
 
     out, report = tmp_path_factory.mktemp("out"), ROOT / "docs" / "demo" / "rear-end-on-arterial"

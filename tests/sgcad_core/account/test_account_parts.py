@@ -27,8 +27,8 @@ DEMO = ROOT / "docs" / "demo" / "left-turn-at-signal"
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """The bundled left turn at a signal, executed."""
-    from flows.batch.find_cases import Case
     from flows.case.chain import CaseRun, run_at_once
+    from flows.case_files.find_cases import Case
 
     run = CaseRun(load("template.yaml", ("tracker=none",)), Case(DEMO, "c1"), run_at_once)
     run.go()

@@ -15,9 +15,9 @@ REPORTS, KILL_AT = 20, 5
 WORKER = """
 import sys
 from pathlib import Path
-from flows import cases
-cases._code_digest = lambda: "as it is"
-from flows.batch.plan_batch import Crew, batch_of
+from flows.case_files import find_cases
+find_cases._code_digest = lambda: "as it is"
+from flows.batch.plan_batch import JobRunner, batch_of
 from flows.deploy.inbox.claims import Claims
 from flows.deploy.inbox.intake import Intake
 from flows.deploy.storage import Place
@@ -28,13 +28,13 @@ inbox, config, out, staging = sys.argv[1:]
 
 def do(found, ended):
     batch = batch_of(found, [Path(config)], Path(out), jobs=1)
-    plan, crew = batch.plan(), Crew(batch)
-    crew.begin(plan)
+    plan, runner = batch.plan(), JobRunner(batch)
+    runner.begin(plan)
     for job in plan:
-        ending = crew.finish(job, run_at_once)
+        ending = runner.finish(job, run_at_once)
         track(job, ending)
         ended(job.case, ending.result)
-    crew.close()
+    runner.close()
 
 place = Place(inbox)
 print(Intake(place, Claims(place), Path(staging), settle_s=0).work(do, 10, 120))
@@ -78,5 +78,5 @@ def test_a_faulty_config_claims_nothing(config_file, tmp_path):
 def test_an_address_of_no_kind_is_told(config_file, tmp_path):
     from flows.deploy.inbox.inbox import inbox_flow
 
-    with pytest.raises(ConfigError, match="nowhere://here: no address that can be opened"):
+    with pytest.raises(ConfigError, match="nowhere://here: cannot be opened"):
         inbox_flow.fn("nowhere://here", str(config_file()), str(tmp_path / "out"))

@@ -3,7 +3,7 @@
 import pytest
 
 from flows.desk.views import filters
-from flows.desk.views.filters import Asked
+from flows.desk.views.filters import ListQuery
 from flows.desk.views.list_rows import Row, disagreements, kind_of, row_of
 
 
@@ -115,7 +115,7 @@ ROWS = [
 
 
 def names(**asked):
-    return [row.case for row in filters.chosen(ROWS, Asked(**asked))]
+    return [row.case for row in filters.chosen(ROWS, ListQuery(**asked))]
 
 
 def test_the_worst_cases_come_first():
@@ -137,34 +137,34 @@ def test_filters_leave_what_is_asked_for(asked, found):
 
 
 def test_a_facet_counts_what_choosing_it_would_leave():
-    counted = filters.counts(ROWS, Asked(kind="angle", config="l"))
+    counted = filters.counts(ROWS, ListQuery(kind="angle", config="l"))
     assert dict(counted["config"]) == {"k": 1, "l": 1}
     assert dict(counted["trust"]) == {"doubtful": 1}
     assert dict(counted["kind"])["angle"] == 1
 
 
 def test_a_query_is_what_was_asked_and_back():
-    asked = Asked(text="a b&c", trust="whole", flag="doubts", below=0.5, sort="case", reverse=True, page=3)
+    asked = ListQuery(text="a b&c", trust="whole", flag="doubts", below=0.5, sort="case", reverse=True, page=3)
     pairs = dict(pair.split("=") for pair in asked.query(page=3).split("&"))
     assert pairs["text"] == "a+b%26c"
-    assert Asked.of({k: v.replace("+", " ").replace("%26", "&") for k, v in pairs.items()}) == asked
+    assert ListQuery.of({k: v.replace("+", " ").replace("%26", "&") for k, v in pairs.items()}) == asked
 
 
 @pytest.mark.parametrize(
     "query", [{"page": "-1"}, {"page": "9" * 40}, {"sort": "__class__"}, {"below": "nan"}, {"flag": "x"}]
 )
 def test_what_is_not_understood_is_not_asked(query):
-    assert Asked.of(query) == Asked()
+    assert ListQuery.of(query) == ListQuery()
 
 
 def test_pages_end_and_the_last_one_stands_for_those_behind_it():
     rows = ROWS * 50
-    shown, number, pages = filters.page_of(rows, Asked(page=99))
+    shown, number, pages = filters.page_of(rows, ListQuery(page=99))
     assert (len(shown), number, pages) == (50, 3, 3)
 
 
 def test_next_and_before_follow_the_list():
-    rows = filters.chosen(ROWS, Asked())
+    rows = filters.chosen(ROWS, ListQuery())
     before, after, number = filters.around(rows, "l/d")
     assert (before.case, after.case, number) == ("b", "c", 3)
     assert filters.around(rows, "gone")[2] == 0

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from flows.case import case_folder
+from flows.case_files import case_folder
 from research.benchmarks.scenes.judge import main
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from tests.plugins.simulator.fake_esmini import log, make

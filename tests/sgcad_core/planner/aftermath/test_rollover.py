@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flows.case import case_folder
+from flows.case_files import case_folder
 from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
