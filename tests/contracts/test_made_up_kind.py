@@ -25,7 +25,7 @@ from sgcad_core.formats.openscenario.playing.timed_motion import BoxShape
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.formats.xml import parse_xml
-from sgcad_core.handover.script import Script, staged
+from sgcad_core.handover.script import Script, staging_for
 from sgcad_core.kinds import ACTORS, learned_actors, mass_kg
 from sgcad_core.kinds.actors import Axles
 from sgcad_core.reading.actors import makes
@@ -92,7 +92,7 @@ def test_its_motion_is_checked_and_it_can_be_the_ego(crash: Scenario, crossing: 
     assert any("V1" in finding.where for finding in found)
     script = Script("made", crash.actors, tuple(tracks), LaneGraph({}, (), {}), roles={"V1": "initiator"})
     assert script.ego_of("initiator") == "V1"
-    assert staged(script, "V1").ego == "V1"
+    assert staging_for(script, "V1").ego == "V1"
 
 
 def test_it_is_shown_in_the_player_and_in_the_drawing(crash: Scenario) -> None:
