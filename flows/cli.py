@@ -162,13 +162,14 @@ def study(
     """
     from flows.deploy import hosts_preflight
     from flows.study import plan, resume, run_study, spec
+    from flows.study.watch_shards import Hosts
 
     known = resume.former_arguments(file, out)
     given = resume.cases_of(known, tuple(cases or ())), truth or known.truth, overrides or known.overrides
     study = spec.load_study(known.file)
     made = plan.plan(study, out, cases=given[0], truth=given[1], overrides=given[2], jobs=jobs, fresh=fresh)
     if hosts:
-        meeting = hosts_preflight.Hosts(hosts, deployment)
+        meeting = Hosts(hosts, deployment)
         code, submitted = _carry_out(made.batch, lambda watch: hosts_preflight.run(made, meeting, watch.ended))
         typer.echo(hosts_preflight.resubmitted_lines(submitted))
         raise typer.Exit(code)

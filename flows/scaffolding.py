@@ -13,10 +13,10 @@ from pathlib import Path
 
 import yaml
 
+from sgcad_core import config_extends
 from sgcad_core.errors import ConfigError
 from sgcad_core.near_names import did_you_mean
 from sgcad_core.registry import KINDS, catalogue
-from sgcad_core.system import extends
 
 TEMPLATES = Path(__file__).parent / "scaffold"
 IMPORTS = {
@@ -130,7 +130,7 @@ def _order(line: str) -> tuple[bool, str]:
 
 def _example(kind: str, lines: dict[str, object] | None) -> str:
     """A config that extends a bundled one, with the plugin in its place."""
-    return yaml.safe_dump({extends.KEY: BASES.get(kind, BASE), **(lines or {})}, sort_keys=False)
+    return yaml.safe_dump({config_extends.KEY: BASES.get(kind, BASE), **(lines or {})}, sort_keys=False)
 
 
 def _readme(given: dict[str, str]) -> str:

@@ -14,7 +14,7 @@ from typing import Any, cast
 import yaml
 from pydantic import ConfigDict, Field, ValidationError
 
-from sgcad_core import config_faults, settings
+from sgcad_core import config_extends, config_faults, settings
 from sgcad_core.case.records import Record
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import (
@@ -34,7 +34,6 @@ from sgcad_core.kinds import CrashRole
 from sgcad_core.near_names import did_you_mean
 from sgcad_core.records.second_reader import LEARNED
 from sgcad_core.registry import plugin_class
-from sgcad_core.system import extends
 
 SINGLE = ("report_reader", "retriever", "backbone", "decoder", "road_writer", "scenario_writer", "simulator", "tracker")
 SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings", "second_opinion")
@@ -103,7 +102,7 @@ class Config(Record):
 def load(path: Path | str, overrides: tuple[str, ...] = ()) -> Config:
     """Read a YAML and `key=value` overrides into a checked Config. Raises ConfigError with every fault."""
     file = _find(Path(path))
-    raw, base = extends.written_out(file, "of plugin kinds", (settings.CONFIGS,))
+    raw, base = config_extends.written_out(file, "of plugin kinds", (settings.CONFIGS,))
     for text in overrides:
         _override(raw, text)
     config = build(raw, name_of(file), f"{file} (extends {base})" if base else str(file))
@@ -159,9 +158,9 @@ def build(raw: dict[str, Any], name: str, where: str) -> Config:
 
 
 def _unknown(key: str, known: set[str]) -> str:
-    if key == extends.KEY:
+    if key == config_extends.KEY:
         return f"{key}: names a base in a YAML only: it is read before --set, which cannot change it"
-    return f"{key}: {config_faults.unknown_name('key', key, sorted({*known, extends.KEY}))}"
+    return f"{key}: {config_faults.unknown_name('key', key, sorted({*known, config_extends.KEY}))}"
 
 
 def _plugin(kind: str, entry: Any, path: str, faults: list[str]) -> Plugin | None:

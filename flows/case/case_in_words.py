@@ -77,3 +77,12 @@ def approach(near: Mapping[str, Any]) -> str:
 
 def _declared(told: Mapping[str, Any]) -> str:
     return f"the {told['striker_area']} of {told['striker']} hits the {told['struck_area']} of {told['struck']}"
+
+
+def state_words(result: Mapping[str, Any]) -> str:
+    """The status of a result, and whether its contact is the declared one."""
+    if result["status"] != "generated":
+        return f"{result['status']} ({result['reason']})"
+    if (declared := as_declared(result)) is None:
+        return "generated but there is neither a contact nor a near crash"
+    return "generated as declared" if declared else "generated but not as declared"

@@ -23,6 +23,7 @@ from typing import Any
 import yaml
 
 from flows.case import person_facts
+from flows.case.case_in_words import state_words
 from flows.case.chain import CaseRun
 from flows.case.run_case import write_run
 from flows.case_files import find_cases
@@ -34,16 +35,16 @@ from sgcad_core.config import Config, build
 from sgcad_core.errors import BadInput, ConfigError, WrongEdit
 from sgcad_core.records.edits import AS_READ, Edit, effective
 from sgcad_core.result import STAGES, as_declared, result_of
-from sgcad_core.revision import (
-    CaseField,
-    fields_of,
-    findings_by_field,
-    parsed_edit,
+from sgcad_core.revision.fields import CaseField, fields_of, parsed_edit
+from sgcad_core.revision.file import (
+    facts_lock,
     read_edits,
     report_digest,
+    with_new_edits,
+    without_last_edits,
     write_edits,
 )
-from sgcad_core.revision.file import facts_lock, with_new_edits, without_last_edits
+from sgcad_core.revision.finding_fields import findings_by_field
 from sgcad_core.revision.standing_edits import SOURCE
 from sgcad_core.system.report_files import facts_file
 
@@ -280,7 +281,7 @@ def _check(
     if _standing(result) < _standing(case.former) or result["status"] == "failed":
         given = ", ".join(f"{e.field} = {e.value}" for e in new) or "undone"
         raise WrongEdit(
-            f"with {given} the case is {_state(result)}; before it was {_state(case.former)}; nothing was changed",
+            f"with {given} the case is {state_words(result)}; before it was {state_words(case.former)}; nothing was changed",
             findings,
         )
 
@@ -290,17 +291,6 @@ def _standing(result: Mapping[str, Any]) -> int:
     if result["status"] == "generated":
         return 3 if as_declared(result) else 2
     return {"exhausted": 1}.get(str(result["status"]), 0)
-
-
-def _state(result: Mapping[str, Any]) -> str:
-    if result["status"] != "generated":
-        return f"{result['status']} ({result['reason']})"
-    declared = {
-        True: "as declared",
-        False: "but not as declared",
-        None: "but there is neither a contact nor a near crash",
-    }
-    return f"generated {declared[as_declared(result)]}"
 
 
 def _as_it_stands(case: Opened, edits: tuple[Edit, ...], started: float) -> Revised:

@@ -7,30 +7,12 @@ docs/scale.md says how to set the hosts up.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from flows.batch.track_cases import OnEnding
 from flows.server import answers
 from flows.study.plan import Plan
-from flows.study.shard_lease import BEAT_S
-from flows.study.watch_shards import PATIENCE_S, START_S
+from flows.study.watch_shards import Hosts
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
-
-DEPLOYMENT = "shard/shard"
-
-
-@dataclass(frozen=True)
-class Hosts:
-    """Options of a study on many hosts: shared storage, deployment, shards and time limits (None: the defaults)."""
-
-    address: str
-    deployment: str = DEPLOYMENT
-    shards: int | None = None
-    jobs: int | None = None
-    beat_s: float = BEAT_S
-    patience_s: float = PATIENCE_S
-    start_s: float = START_S
 
 
 def run(plan: Plan, hosts: Hosts, on_ending: OnEnding) -> list[str]:

@@ -32,12 +32,11 @@ from flows.batch.plan_batch import Job
 from flows.batch.prefect_case_task import threads
 from flows.batch.track_cases import OnEnding
 from flows.case.run_case import Ending
-from flows.deploy.hosts_preflight import DEPLOYMENT, Hosts
 from flows.study.plan import Plan
 from flows.study.shard_lease import BEAT_S
 from flows.study.shards import Shard, lay_out, run_shard, shard_job
 from flows.study.shared_storage import Mark, SharedFolder, Unreachable
-from flows.study.watch_shards import ShardWatch, watch_until_done
+from flows.study.watch_shards import DEPLOYMENT, Hosts, ShardWatch, watch_until_done
 from flows.study.watch_shards import State as Standing
 from sgcad_core.errors import ConfigError
 

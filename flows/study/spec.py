@@ -27,11 +27,10 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from flows.case_files.find_cases import safe_id
 from flows.study import cross_product, study_base
-from sgcad_core import settings
+from sgcad_core import config_extends, settings
 from sgcad_core.config_faults import unknown_name
 from sgcad_core.errors import ConfigError
 from sgcad_core.near_names import did_you_mean
-from sgcad_core.system import extends
 
 STUDIES = settings.CONFIGS / "studies"
 FOLDERS = (STUDIES, settings.CONFIGS)
@@ -137,7 +136,7 @@ class Study:
 def load_study(path: Path | str) -> Study:
     """Read a study; its faults stand in it. Raises ConfigError where so little is right that no arm can be told."""
     file = find_study(Path(path))
-    raw, base = extends.written_out(file, EXPECTED, FOLDERS, study_base.merged)
+    raw, base = config_extends.written_out(file, EXPECTED, FOLDERS, study_base.merged)
     study_base.give_config(raw)
     parsed, faults = _parsed(raw)
     if parsed is None:
@@ -162,7 +161,7 @@ def study_in(path: Path) -> Path | None:
 def is_study(file: Path) -> bool:
     """Whether a YAML, or the base that it extends, has arms or a cross product."""
     raw = _looked_into(file)
-    base = extends.base_of(file, raw.get(extends.KEY), FOLDERS)
+    base = config_extends.base_of(file, raw.get(config_extends.KEY), FOLDERS)
     return bool({"arms", "cross"} & {*raw, *(_looked_into(base) if base else ())})
 
 

@@ -14,12 +14,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from sgcad_core.system import extends
+from sgcad_core import config_extends
 
 
 def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     """The base with the changes made: keys as in a config, arms by their names."""
-    found = extends.merged(base, changes)
+    found = config_extends.merged(base, changes)
     if _listed(base.get("arms")) and _listed(changes.get("arms")):
         found["arms"] = _arms(base["arms"], changes["arms"])
     return found
@@ -39,7 +39,7 @@ def _arms(base: list[dict[str, Any]], changes: list[dict[str, Any]]) -> list[dic
             changed[arm["name"]] = arm
         else:
             new.append(arm)  # a name given twice stands twice, which is told
-    return [*(extends.block(arm, changed.get(arm["name"], {})) for arm in base), *new]
+    return [*(config_extends.block(arm, changed.get(arm["name"], {})) for arm in base), *new]
 
 
 def give_config(raw: Mapping[str, Any]) -> None:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
-from flows.study.shard_lease import lease_name
+from flows.study.shard_lease import BEAT_S, lease_name
 from flows.study.shards import ShardJob
 from flows.study.shared_storage import Mark, SharedFolder, Unreachable
 from sgcad_core.errors import ConfigError
@@ -24,6 +24,22 @@ START_S = 180.0
 """From a worker's taking a run to its lease: a process, Prefect's import, on a busy machine."""
 FRUITLESS = 3
 """Runs of a shard in a row without a new case that end the study."""
+
+
+DEPLOYMENT = "shard/shard"
+
+
+@dataclass(frozen=True)
+class Hosts:
+    """Options of a study on many hosts: shared storage, deployment, shards and time limits (None: the defaults)."""
+
+    address: str
+    deployment: str = DEPLOYMENT
+    shards: int | None = None
+    jobs: int | None = None
+    beat_s: float = BEAT_S
+    patience_s: float = PATIENCE_S
+    start_s: float = START_S
 
 
 class Pool(Protocol):

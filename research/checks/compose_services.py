@@ -8,6 +8,7 @@ flows are served. Needs PostgreSQL's `initdb` and `postgres` (Debian: apt-get in
 
 from __future__ import annotations
 
+import argparse
 import os
 import pwd
 import secrets
@@ -17,7 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -273,8 +274,11 @@ def _free_port() -> int:
         return port
 
 
-def main() -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print a line a service; 0 if all are well, 1 if one is not, 2 where a program is missing."""
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args(
+        arguments
+    )
     try:
         needs()
     except MissingTool as fault:

@@ -23,7 +23,7 @@ import tempfile
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -256,14 +256,14 @@ def _tab(port: int) -> str:
 
 
 # ------------------------------------------------------------------ command line
-def main() -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Open every page and print what it lacks; the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("database", type=Path, nargs="?", default=Path("runs/mlflow.db"))
     parser.add_argument("--experiment", default="", help="default: the one with the newest run")
     parser.add_argument("--shots", type=Path, help="folder for screenshots, mlflow-<page>.png")
     parser.add_argument("--wait", type=float, default=120.0, help="seconds that a page may take")
-    asked = parser.parse_args()
+    asked = parser.parse_args(arguments)
     settings.quiet_libraries()
     try:
         return look(asked)

@@ -9,10 +9,12 @@ depends on the card, so the Dockerfile installs it first, by version.
 
 from __future__ import annotations
 
+import argparse
 import json
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -57,6 +59,15 @@ def _entry(one: dict[str, Any]) -> str:
     return f"{about['name']}=={about['version']} --hash=sha256:{digests['sha256']}"
 
 
-if __name__ == "__main__":
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the lock file and print its place."""
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args(
+        arguments
+    )
     LOCK.write_text(lock(), encoding="utf-8")
     sys.stdout.write(f"{LOCK}\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

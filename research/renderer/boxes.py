@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from research.renderer.lines import Points
 
@@ -56,3 +57,9 @@ def within(pose: Pose, size: Size, shares: Sequence[tuple[float, float]]) -> Poi
     c, s = math.cos(pose.heading), math.sin(pose.heading)
     laid: Points = np.array(shares) * size @ np.array([(c, s), (-s, c)]) + (pose.x, pose.y)
     return laid
+
+
+def distances_to(way: Points, pose: Pose) -> NDArray[np.float64]:
+    """Metres from every point of a way to a pose."""
+    gaps: NDArray[np.float64] = np.hypot(way[:, 0] - pose.x, way[:, 1] - pose.y)
+    return gaps

@@ -12,10 +12,9 @@ from dataclasses import dataclass, field
 from random import Random
 
 import numpy as np
-from numpy.typing import NDArray
 
 from research.generator.crash.world import Actor, Contact, Crash
-from research.renderer.boxes import SIDE, Pose, Size, half, overlap, wrap
+from research.renderer.boxes import SIDE, Pose, Size, distances_to, half, overlap, wrap
 from research.renderer.lines import STEP, Ground, Points, headings, shift
 from sgcad_core.kinds import actor_kind
 
@@ -142,7 +141,7 @@ class Stage:
             self._stand(keeper, index)
             self._attach(keeper, other, areas, slide=0.0, most=math.radians(25))
             at = self.at.pop(other)
-            aside = float(_gaps(way, at).min())
+            aside = float(distances_to(way, at).min())
             off[index] = aside + abs(wrap(at.heading - self._own_heading(other, at))) / ASKEW
         if not off:
             return min(max(first, lowest), highest)
@@ -187,7 +186,7 @@ class Stage:
     def _nearest(self, actor: int, pose: Pose) -> int:
         """Index on an actor's way nearest to a pose."""
         way = self.ways[actor]
-        return min(max(int(_gaps(way, pose).argmin()), 4), len(way) - 3)
+        return min(max(int(distances_to(way, pose).argmin()), 4), len(way) - 3)
 
     def _own_heading(self, actor: int, pose: Pose) -> float:
         """Which way it faces where its way passes a pose."""
@@ -244,7 +243,7 @@ class Stage:
         for _ in range(1 if queues else rng.choice((1, 1, 1, 2, 2, 3))):
             if ahead is not None and ahead.contact:  # it came behind the one that it hits
                 first, between = ahead.poses[0], 0.6 * (ahead.size[0] + self.sizes[index][0])
-                place = min(place, int(_gaps(self.ways[index], first).argmin()) - int(between / STEP))
+                place = min(place, int(distances_to(self.ways[index], first).argmin()) - int(between / STEP))
             while place >= 1 and self._hidden(index, self._on_way(index, place), others):
                 place -= 4
             if place < 1:
@@ -287,12 +286,6 @@ class Stage:
         if math.hypot(x, y) < 0.4:
             return track.poses[track.contact].heading + self.rng.uniform(-1.2, 1.2)
         return math.atan2(y, x) + self.rng.uniform(-0.6, 0.6)
-
-
-def _gaps(way: Points, pose: Pose) -> NDArray[np.float64]:
-    """Metres from every point of a way to a pose."""
-    gaps: NDArray[np.float64] = np.hypot(way[:, 0] - pose.x, way[:, 1] - pose.y)
-    return gaps
 
 
 def _turned(actor: Actor) -> float:

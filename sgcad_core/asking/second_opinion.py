@@ -85,8 +85,8 @@ def _answered(context: Context, case: str, ask: Ask) -> Answered:
 def load_weights(prompt: str, fields: Sequence[str] = FIELDS) -> Mapping[str, Weights]:
     """configs/prompts/<prompt>.json: field -> its weights. Raises ConfigError with what to mend."""
     file = settings.PROMPTS / f"{prompt}.json"
-    bench = "outside --drawings" if prompt in (WHOLE, DRAWN) else "fuse_weights POOL.jsonl --out HEARD.jsonl"
-    remedy = f"fit them with `python -m research.benchmarks.texts.{bench} --fit ...`"
+    outside, pool = "research.benchmarks.texts.outside --drawings", "research.benchmarks.texts.fuse_weights POOL.jsonl"
+    remedy = f"fit them with `python -m {outside if prompt in (WHOLE, DRAWN) else pool} --fit ...`"
     if not file.is_file():
         raise ConfigError(f"second_opinion {prompt!r}: its file of weights {file} is missing; {remedy}")
     try:

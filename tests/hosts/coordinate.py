@@ -19,10 +19,10 @@ def main() -> None:
     """Run the study on the hosts; a line for every case that comes home, and for every shard submitted again."""
     study, cases, out, address = sys.argv[1:]
     settings.quiet_libraries()
-    from flows.deploy.hosts_preflight import Hosts
     from flows.deploy.shards import study_on_hosts
     from flows.study.plan import plan
     from flows.study.spec import load_study
+    from flows.study.watch_shards import Hosts
 
     tracker = ["tracker=mlflow", f"tracker.uri={MLFLOW}", f"tracker.experiment=study/{Path(study).stem}"]
     made = plan(load_study(Path(study)), Path(out), cases=[Path(cases)], overrides=tracker)

@@ -4,11 +4,8 @@
 
 Starts real servers on sqlite, or on two databases (`prefect`, `mlflow`) of a PostgreSQL server, and gives them
 what a study gives them a case: a task run, one more a step and an artifact, an MLflow run with figures and
-files, one object and one mark. Prefect's server is measured as a command starts its own, as `make up` starts it,
-and as it is by default. Tells processor seconds of the server and of the client (they do not depend on
-other users of the machine as much as the clock does), wall seconds, and how far the server lagged behind.
-The case is a real one: the bundled report, run once.
-"""
+files, one object and one mark. Prefect's server is measured as a command and as `make up` start it, and by default.
+Prints processor seconds of server and client, wall seconds, and the server's delay."""
 
 from __future__ import annotations
 

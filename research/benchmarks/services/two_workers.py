@@ -142,10 +142,10 @@ def inside(words: Sequence[str], shards: int, jobs: int) -> None:
     """The process that starts the study: prints how long it took and how many cases were generated."""
     study, cases, out, address = words
     settings.quiet_libraries()
-    from flows.deploy.hosts_preflight import Hosts
     from flows.deploy.shards import study_on_hosts
     from flows.study.plan import plan
     from flows.study.spec import load_study
+    from flows.study.watch_shards import Hosts
 
     made = plan(load_study(Path(study)), Path(out), cases=[Path(cases)])
     statuses: list[str] = []

@@ -17,7 +17,7 @@ from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.road_mentions import axis_in, axis_of
 from sgcad_core.reading.roads.street_names import StreetNames, street_names
 from sgcad_core.reading.text.compass import compass_of, turned
-from sgcad_core.reading.text.sentence_roles import STORY_ROLES
+from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, STORY_ROLES
 from sgcad_core.reading.text.speeds import Speed
 from sgcad_core.records.specs import Compass
 
@@ -32,6 +32,7 @@ class Curve(NamedTuple):
 
 _CURVE = rule("road_details.curve")
 _BARE_CURVE = rule("road_details.bare_curve")
+_RURAL = rule("roads.rural")
 
 
 def curves(statements: Sequence[Statement], headings: Mapping[str, Compass]) -> tuple[Curve, ...]:
@@ -202,3 +203,9 @@ def _axis_of(part: str, headings: Mapping[str, Compass]) -> Compass | None:
     named = [headings[v] for v in rule("common.vehicle").findall(part) if v in headings]
     axes = {axis_of(w) for w in ways if w} or {axis_of(h) for h in named}
     return next(iter(axes)) if len(axes) == 1 else None
+
+
+def rural_source(statements: tuple[Statement, ...]) -> Source | None:
+    """Where the text says that the crash was in the country."""
+    story = (t for t in statements if t.role in CRASH_ROLES)
+    return next((Source(t.number, m[0], _RURAL.id) for t in story if (m := _RURAL.search(t.text))), None)

@@ -34,7 +34,7 @@ from sgcad_core.reading.motion.absolute_headings import turned_to_roads
 from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.lanes import LaneFacts
-from sgcad_core.reading.roads.road_details import Curve, SpeedLimit, curves, speed_limits
+from sgcad_core.reading.roads.road_details import Curve, SpeedLimit, curves, rural_source, speed_limits
 from sgcad_core.reading.roads.road_mentions import Kind, RoadMention, axis_of, road_mentions
 from sgcad_core.reading.roads.road_merge import MergedRoad, merge_roads
 from sgcad_core.reading.roads.work_zones_openings import (
@@ -47,7 +47,7 @@ from sgcad_core.reading.roads.work_zones_openings import (
     names_gore,
 )
 from sgcad_core.reading.text.compass import AXIS_NAMES, COMPASS, turned
-from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, STORY_ROLES
+from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 from sgcad_core.records.specs import Beside, Compass, RoadLayout
 
 
@@ -125,13 +125,15 @@ def roads_of(statements: tuple[Statement, ...], roster: Roster, crash: CrashFact
     gathered = merge_roads(mentions, headings) or [MergedRoad(None) for _ in limits[:1]]
     approaches = approaches_of(statements)
     junction = junction_of(statements, driven, gathered, approaches)
-    rural = _rural(statements)
+    rural = rural_source(statements)
     roads = tuple(_with_rural(_road(r, gathered, limits, bends, headings), rural) for r in gathered)
     roads = _placed(tuple(_center_lane_elsewhere(r, roads) for r in roads), approaches)
     merge_lane = any(_MERGE_LANE.search(t.text) for t in statements)
     story = [t.text for t in statements if t.role in STORY_ROLES]
     beside = tuple(rule.yields["beside"] for rule in of_role("beside") if any(map(rule.search, story)))
-    walked = any(map(_CROSSWALK.search, story)) or (junction.kind != "none" and _somebody_walks(crash))
+    walked = any(map(_CROSSWALK.search, story)) or (
+        junction.kind != "none" and any(actor_kind(other.kind).walks for other in crash.others)
+    )
     urban = any(map(_URBAN.search, story))
     notes = _open_ends(roads, junction, crash)
     in_gore = in_gores(statements)
@@ -188,16 +190,6 @@ def _staying(v: VehicleFacts) -> VehicleFacts:
     return replace(v, origin=origin, target=target)
 
 
-def _somebody_walks(crash: CrashFacts) -> bool:
-    return any(actor_kind(other.kind).walks for other in crash.others)
-
-
-def _rural(statements: tuple[Statement, ...]) -> Source | None:
-    """Where the text says that the crash was in the country."""
-    story = (t for t in statements if t.role in CRASH_ROLES)
-    return next((Source(t.number, m[0], _RURAL.id) for t in story if (m := _RURAL.search(t.text))), None)
-
-
 def _with_rural(road: RoadFact, rural: Source | None) -> RoadFact:
     return replace(road, rural=True, where={**road.where, "rural": rural}) if rural else road
 
@@ -238,7 +230,6 @@ def _center_lane_elsewhere(road: RoadFact, roads: tuple[RoadFact, ...]) -> RoadF
 
 
 _MERGE_LANE = rule("roads.merge_lane")
-_RURAL = rule("roads.rural")
 _URBAN = rule("roads.urban")
 _CROSSWALK = rule("roads.crosswalk")
 _EXIT_RAMP, _ENTRANCE_RAMP = rule("roads.exit_ramp"), rule("roads.entrance_ramp")

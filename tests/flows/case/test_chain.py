@@ -231,7 +231,9 @@ def test_a_models_answers_to_the_whole_report_join_the_reading(monkeypatch, tmp_
     behavior = BehaviorSpec(actors=actors, contacts=(contact,))
     weights = {kind: Weights(differ=9.0) for kind in KINDS}
     said = Opinion(answered=Answered(layout=RoadLayout(legs=legs), behavior=behavior), weights=weights)
-    monkeypatch.setattr("flows.case.chain.whole", lambda report, ask: report.model_copy(update={"opinion": said}))
+    monkeypatch.setattr(
+        "flows.case.chain.with_model_opinion", lambda report, ask: report.model_copy(update={"opinion": said})
+    )
     source = tmp_path / "c1.txt"
     source.write_text("V1 was northbound and V2 was southbound. The front of V1 struck the front of V2.")
     config = load(settings.ROOT / "configs" / "fused.yaml", ("tracker=jsonl",))

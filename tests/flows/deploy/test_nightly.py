@@ -68,7 +68,7 @@ def test_a_run_is_measured_accepted_and_held_against_what_was_accepted(measured)
     assert figures["kit"]["failed"] == pytest.approx(1 / 3, abs=1e-6)
     latest, out = nightly._about(measured, figures), measured.out
     assert nightly._judged(out, latest, Tolerance()).is_completed()
-    with pytest.raises(ConfigError, match="nothing was measured here yet"):
+    with pytest.raises(ConfigError, match="no run was measured here yet"):
         accept_latest(out)
     (out / "latest.json").write_text(json.dumps(latest))
     accept_latest(out)

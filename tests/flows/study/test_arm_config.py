@@ -68,5 +68,5 @@ def test_a_digest_and_what_is_kept_do_not_know_how_a_config_is_written(config_fi
     after = load(whole)
     assert find_cases.config_digest(after) == find_cases.config_digest(before)
     config_folder.write(tmp_path / "kept", after)
-    assert yaml.safe_load((tmp_path / "kept" / config_folder.FILE).read_text()) == before.raw
+    assert yaml.safe_load((tmp_path / "kept" / config_folder.CONFIG).read_text()) == before.raw
     assert config_folder.replaced(tmp_path / "kept", before) == ""

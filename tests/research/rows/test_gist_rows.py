@@ -20,6 +20,7 @@ from research.rows.row_stream import one_row
 from sgcad_core import settings
 from sgcad_core.asking.prompts import load_prompt
 from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, Gist
+from sgcad_core.records.answer_schema import trained_schema
 
 WEIGHTS = settings.ROOT / "plugins" / "backbone" / "mini" / "weights"
 KNOWN = {"touched": (True,), "subject": ("stopped",), "subject_area": ("back", "left")}
@@ -41,7 +42,7 @@ def test_the_walk_writes_what_the_spec_writes() -> None:
 
 
 def test_every_option_of_the_walk_is_one_of_the_schema_and_one_token(coder: Coder) -> None:
-    schema = Gist.model_json_schema()["properties"]
+    schema = trained_schema(Gist)["properties"]
     for key, options in OPTIONS.items():
         assert all(len(coder.piece(text)) == 1 for text in options)
         named = schema[key].get("enum")

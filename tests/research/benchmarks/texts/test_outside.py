@@ -164,7 +164,7 @@ def test_a_run_asks_once_keeps_answers_and_writes_weights(tmp_path: Path, monkey
         asked.append(report.case)
         return report.model_copy(update={"opinion": Opinion(answered=answer(some[report.narrative]))})
 
-    monkeypatch.setattr(outside_cases, "whole", whole)
+    monkeypatch.setattr(outside_cases, "with_model_opinion", whole)
     monkeypatch.setattr(outside_cases, "ask_of", lambda config: None)
     kept, weights = tmp_path / "answers.jsonl", tmp_path / "weights"
     weights.mkdir()

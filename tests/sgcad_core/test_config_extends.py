@@ -7,9 +7,8 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sgcad_core import config, settings
+from sgcad_core import config, config_extends, settings
 from sgcad_core.errors import ConfigError
-from sgcad_core.system import extends
 
 BASE = {
     "seed": 1, "report_reader": "auto", "retriever": "none", "road_writer": {"name": "template", "leg_length_m": 180},
@@ -54,24 +53,24 @@ def loaded(write):
 # ------------------------------------------------------------------ merging, whatever is given
 @given(WHOLES)
 def test_no_change_is_the_base_itself(base):
-    assert extends.merged(base, {}) == base
+    assert config_extends.merged(base, {}) == base
 
 
 @given(WHOLES, CHANGES)
 def test_keys_are_the_bases_and_the_changes_without_the_removed_ones(base, changes):
     removed = {key for key, value in changes.items() if value is None}
-    assert set(extends.merged(base, changes)) == ({*base, *changes} - removed)
+    assert set(config_extends.merged(base, changes)) == ({*base, *changes} - removed)
 
 
 @given(WHOLES, CHANGES)
 def test_a_key_that_is_not_changed_stays(base, changes):
-    found = extends.merged(base, changes)
+    found = config_extends.merged(base, changes)
     assert all(found[key] == base[key] for key in base if key not in changes)
 
 
 @given(WHOLES, CHANGES)
 def test_words_numbers_and_lists_take_the_bases_place(base, changes):
-    found = extends.merged(base, changes)
+    found = config_extends.merged(base, changes)
     assert all(found[k] == v for k, v in changes.items() if v is not None and not isinstance(v, dict))
 
 
@@ -80,21 +79,21 @@ def test_every_field_given_holds_and_a_fields_neighbors_stay_only_under_the_same
     for key, given_ in changes.items():
         if not isinstance(given_, dict):
             continue
-        held = extends.named(base.get(key))
+        held = config_extends.named(base.get(key))
         same = isinstance(held, dict) and given_.get("name", held.get("name")) == held.get("name")
-        assert extends.merged(base, changes)[key] == ({**held, **given_} if same else given_)
+        assert config_extends.merged(base, changes)[key] == ({**held, **given_} if same else given_)
 
 
 @given(WHOLES, CHANGES)
 def test_the_same_changes_twice_are_the_changes_once(base, changes):
-    once = extends.merged(base, changes)
-    assert extends.merged(once, changes) == once
+    once = config_extends.merged(base, changes)
+    assert config_extends.merged(once, changes) == once
 
 
 @given(WHOLES, CHANGES)
 def test_neither_side_is_changed(base, changes):
     before = copy.deepcopy((base, changes))
-    extends.merged(base, changes)
+    config_extends.merged(base, changes)
     assert (base, changes) == before
 
 
