@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sgcad_core.result import counts_of
+from sgcad_core.result import as_declared, counts_of
 
 MAX_LINES = 12
 """Of notes, and of what is lacking or assumed; all of it stands in result.json."""

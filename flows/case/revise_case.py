@@ -280,10 +280,8 @@ def _check(
         return
     if _standing(result) < _standing(case.former) or result["status"] == "failed":
         given = ", ".join(f"{e.field} = {e.value}" for e in new) or "undone"
-        raise WrongEdit(
-            f"with {given} the case is {state_words(result)}; before it was {state_words(case.former)}; nothing was changed",
-            findings,
-        )
+        now, before = state_words(result), state_words(case.former)
+        raise WrongEdit(f"with {given} the case is {now}; before it was {before}; nothing was changed", findings)
 
 
 def _standing(result: Mapping[str, Any]) -> int:
