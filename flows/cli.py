@@ -161,8 +161,9 @@ def study(
     An interrupted study resumes by its name alone, with the cases and overrides that it was started with.
     """
     from flows.deploy import hosts_preflight
-    from flows.study import plan, resume, run_study, spec
+    from flows.study import plan, resume, run_study
     from flows.study.watch_shards import Hosts
+    from flows.study_file import spec
 
     known = resume.former_arguments(file, out)
     given = resume.cases_of(known, tuple(cases or ())), truth or known.truth, overrides or known.overrides
@@ -185,8 +186,9 @@ def check(
 ) -> None:
     """Check a config, or all arms of a study, without starting anything."""
     from flows.catalogue import describe_config
-    from flows.study import plan, spec
-    from flows.study.arm_config import load_config
+    from flows.study import plan
+    from flows.study_file import spec
+    from flows.study_file.arm_config import load_config
 
     if study_file := spec.study_in(config):
         typer.echo(plan.described(spec.load_study(study_file), tuple(overrides or ())))

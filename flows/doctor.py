@@ -84,7 +84,7 @@ def _netconvert(out: Path) -> str:
 
 def _configs(out: Path) -> str:
     from flows.study.plan import arms_of
-    from flows.study.spec import is_study, load_study
+    from flows.study_file.spec import is_study, load_study
     from sgcad_core.config import load
 
     files = sorted(settings.CONFIGS.rglob("*.yaml"))

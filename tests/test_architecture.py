@@ -13,7 +13,8 @@ from statistics import median, quantiles
 
 import pytest
 
-from flows.study import plan, spec
+from flows.study import plan
+from flows.study_file import spec
 from sgcad_core import config, registry, settings
 from sgcad_core.interfaces import Plugin
 

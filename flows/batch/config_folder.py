@@ -18,7 +18,7 @@ import yaml
 
 from flows.case_files.case_folder import CONFIG
 from flows.case_files.find_cases import safe_id
-from flows.study.cross_product import name_of
+from flows.study_file.cross_product import name_of
 from sgcad_core.config import Config
 
 NO_ARTIFACT = ("judge", "tracker")

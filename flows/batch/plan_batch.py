@@ -26,7 +26,7 @@ from flows.case_files import case_folder, find_cases, stage_cache
 from flows.case_files.case_folder import CaseFolder
 from flows.case_files.find_cases import Case
 from flows.case_files.stage_cache import Sharing
-from flows.study.arm_config import load_config
+from flows.study_file.arm_config import load_config
 from sgcad_core.asking.refine import OnAttempt
 from sgcad_core.config import Config
 from sgcad_core.errors import ConfigError, ProcessDied, SimulationFailed

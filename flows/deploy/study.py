@@ -14,7 +14,7 @@ from flows.batch.plan_batch import MAX_JOBS
 from flows.batch.prefect_case_task import threads
 from flows.deploy.defaults import overrides_of
 from flows.study.plan import plan
-from flows.study.spec import load_study
+from flows.study_file.spec import load_study
 
 
 @flow(name="study", flow_run_name="study {file}", task_runner=threads(MAX_JOBS), persist_result=False)

@@ -22,9 +22,9 @@ from flows.batch import machine
 from flows.batch.plan_batch import Batch, Job, batch_over
 from flows.case_files import case_folder
 from flows.case_files.find_cases import Case, cases_in, config_digest, dataset_digest
-from flows.study.arm_config import config_of
 from flows.study.published import publication
-from flows.study.spec import Arm, Study, fault_lines
+from flows.study_file.arm_config import config_of
+from flows.study_file.spec import Arm, Study, fault_lines
 from sgcad_core import settings
 from sgcad_core.config import Config, build
 from sgcad_core.errors import ConfigError

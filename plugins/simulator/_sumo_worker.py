@@ -12,16 +12,7 @@ from typing import NamedTuple
 import libsumo
 import numpy as np
 
-from plugins.sumo_session import (
-    AS_TOLD,
-    COLLISIONS,
-    QUIET,
-    box_center,
-    front_bumper,
-    heading_of,
-    running,
-    sumo_angle,
-)
+from plugins.sumo_session import AS_TOLD, COLLISIONS, QUIET, box_center, front_bumper, heading_of, running, sumo_angle
 from sgcad_core.case.records import Floats
 from sgcad_core.errors import SimulationFailed
 

@@ -67,8 +67,8 @@ class CrashReport(NarrativeRecord):
         """What is read of the narrative, with places in the text as it was written: by the rules and, where there is a
         second opinion, as both together have it; and all that as people have it."""
         from sgcad_core.reading.reading import read
-        from sgcad_core.reading.reading_with_edits import (
-            with_edits,  # patterns of half a second, which not everybody needs
+        from sgcad_core.reading.reading_with_edits import (  # patterns of half a second, which not everybody needs
+            with_edits,
         )
         from sgcad_core.reading.second_reader.fuse_gist import fused_with_gist
         from sgcad_core.reading.second_reader.fuse_whole import fused_with_answer

@@ -1,7 +1,7 @@
 """The closed kinds, one record each: actors, junctions, roads and maneuvers. See docs/kinds.md."""
 
 from sgcad_core.kinds.actors import ACTORS, ActorRecord, actor_kind, kind_of_letter, learned_actors, mass_kg
-from sgcad_core.kinds.junctions import (
+from sgcad_core.kinds.junctions import (  # fmt: skip
     FOUR,
     FOUR_LEG,
     GORE,
@@ -20,7 +20,7 @@ from sgcad_core.kinds.junctions import (
     Unsupported,
     junction_kind,
     unsupported_kind,
-)  # fmt: skip
+)
 from sgcad_core.kinds.maneuvers import CRASH_ROLES, MANEUVERS, CrashRole, Maneuver
 from sgcad_core.kinds.roads import ALLEY, DRIVEWAY, JOINING, RAMP, ROAD, ROADS, UNPAINTED, RoadKind
 

@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -50,11 +51,16 @@ def tables(tree: ast.AST, ids: set[str]) -> list[int]:
     return found
 
 
+@cache
+def _trees() -> dict[str, ast.Module]:
+    """The parsed modules by path."""
+    files = [f for folder in FOLDERS for f in sorted((ROOT / folder).rglob("*.py")) if HOME not in f.parents]
+    return {str(f.relative_to(ROOT)): ast.parse(f.read_text(encoding="utf-8")) for f in files}
+
+
 @pytest.mark.parametrize("ids", IDS, ids=["actors", "junctions"])
 def test_no_other_module_has_a_table_of_kinds(ids: set[str]) -> None:
-    files = [f for folder in FOLDERS for f in sorted((ROOT / folder).rglob("*.py")) if HOME not in f.parents]
-    trees = {str(f.relative_to(ROOT)): ast.parse(f.read_text(encoding="utf-8")) for f in files}
-    found = [f"{name}:{line}" for name, tree in trees.items() if name not in ALLOWED for line in tables(tree, ids)]
+    found = [f"{name}:{line}" for name, tree in _trees().items() if name not in ALLOWED for line in tables(tree, ids)]
     assert found == [], "ask the record of the kind, or add a field to it (sgcad_core/kinds)"
 
 

@@ -11,8 +11,8 @@ import pytest
 
 from flows.case.run_case import run_case
 from flows.case_files.find_cases import Case
-from flows.study.arm_config import load_config
-from flows.study.spec import load_study
+from flows.study_file.arm_config import load_config
+from flows.study_file.spec import load_study
 from plugins.retriever.lancedb import LanceDB
 from sgcad_core import settings
 from sgcad_core.config import build

@@ -21,8 +21,8 @@ def main() -> None:
     settings.quiet_libraries()
     from flows.deploy.shards import study_on_hosts
     from flows.study.plan import plan
-    from flows.study.spec import load_study
     from flows.study.watch_shards import Hosts
+    from flows.study_file.spec import load_study
 
     tracker = ["tracker=mlflow", f"tracker.uri={MLFLOW}", f"tracker.experiment=study/{Path(study).stem}"]
     made = plan(load_study(Path(study)), Path(out), cases=[Path(cases)], overrides=tracker)

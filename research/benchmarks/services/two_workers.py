@@ -144,8 +144,8 @@ def inside(words: Sequence[str], shards: int, jobs: int) -> None:
     settings.quiet_libraries()
     from flows.deploy.shards import study_on_hosts
     from flows.study.plan import plan
-    from flows.study.spec import load_study
     from flows.study.watch_shards import Hosts
+    from flows.study_file.spec import load_study
 
     made = plan(load_study(Path(study)), Path(out), cases=[Path(cases)])
     statuses: list[str] = []

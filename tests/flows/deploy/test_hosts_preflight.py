@@ -4,7 +4,7 @@ import pytest
 
 from flows.deploy import hosts_preflight
 from flows.study.plan import plan
-from flows.study.spec import load_study
+from flows.study_file.spec import load_study
 from sgcad_core.errors import ConfigError, MissingTool
 
 

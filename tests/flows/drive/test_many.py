@@ -30,6 +30,7 @@ def finished(folder):
     return {f: f.stat().st_mtime_ns for f in folder.rglob("drive.json")}
 
 
+@pytest.mark.slow
 def test_a_killed_run_goes_on_where_it_was(cases, tmp_path):
     listed = tmp_path / "drivers.yaml"
     listed.write_text("\n".join(f"- {{name: aeb, ttc_s: {d['ttc_s']}}}" for d in DRIVERS))
@@ -50,6 +51,7 @@ def test_a_killed_run_goes_on_where_it_was(cases, tmp_path):
     assert not list(cases.rglob(".*partial*"))
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_number_of_drives(cases):
     order = Order(tuple(driver_entry(d) for d in DRIVERS[:2]), pages=False, fresh=True)
     folders = case_folders([cases])

@@ -13,7 +13,7 @@ from flows.results import measures, writing
 from flows.results.layouts import LAYOUTS
 from flows.results.table import refusal_counts
 from flows.study.published import publication
-from flows.study.spec import load_study
+from flows.study_file.spec import load_study
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 

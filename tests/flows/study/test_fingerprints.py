@@ -11,7 +11,7 @@ from pathlib import Path
 import yaml
 
 from flows.study.plan import arms_of
-from flows.study.spec import load_study
+from flows.study_file.spec import load_study
 from sgcad_core import settings
 from sgcad_core.config import load
 

@@ -7,7 +7,7 @@ import yaml
 
 from flows.case_files.find_cases import dataset_digest
 from flows.study.plan import plan
-from flows.study.spec import load_study
+from flows.study_file.spec import load_study
 from sgcad_core.errors import ConfigError
 
 

@@ -8,7 +8,7 @@ import yaml
 
 from flows.study import resume
 from flows.study.plan import plan
-from flows.study.spec import load_study
+from flows.study_file.spec import load_study
 from sgcad_core.errors import ConfigError
 
 

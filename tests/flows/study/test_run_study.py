@@ -16,7 +16,7 @@ import yaml
 from flows.batch.plan_batch import JobRunner
 from flows.study import run_study
 from flows.study.plan import plan
-from flows.study.spec import load_study
+from flows.study_file.spec import load_study
 from sgcad_core.asking.refine import run_at_once
 
 DEMO = Path(__file__).resolve().parents[3] / "docs" / "demo"

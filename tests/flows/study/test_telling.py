@@ -10,7 +10,7 @@ from flows.batch.run_batch import Cost
 from flows.cli import app
 from flows.study.plan import plan
 from flows.study.run_study import cost_line
-from flows.study.spec import load_study
+from flows.study_file.spec import load_study
 from sgcad_core.errors import ConfigError
 
 

@@ -186,6 +186,7 @@ def test_drawings_of_junctions_rarely_show_driveways_that_no_text_tells_of() -> 
             assert report.crash.accesses
 
 
+@pytest.mark.slow
 def test_a_one_way_street_whose_lanes_nobody_counts_mostly_has_one() -> None:
     lanes = []
     for seed in range(many(1500, 4000)):

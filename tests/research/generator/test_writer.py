@@ -11,6 +11,7 @@ from tests.effort import many
 from tests.research.reports import sentences, text_report
 
 
+@pytest.mark.slow
 def test_held_out_families_never_train() -> None:
     marks = (
         "A wrecker removed",

@@ -77,6 +77,7 @@ def test_a_run_killed_after_any_step_ends_with_the_weights_of_an_undisturbed_one
         assert_same(tmp_path / "whole", tmp_path / f"killed-{step}", 8)
 
 
+@pytest.mark.slow
 def test_a_run_killed_with_every_save_in_between_ends_alike(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(row_stream, "POOL", 6)
     Trainer(parse(options(tmp_path / "whole", 6))).run()
@@ -126,6 +127,7 @@ def test_a_step_draws_nothing_from_the_global_generators(tmp_path: Path) -> None
     assert (random.getstate(), np.random.get_state()[1].tolist()) == before[1:]
 
 
+@pytest.mark.slow
 def test_the_rows_are_the_same_whatever_the_number_of_workers(monkeypatch: pytest.MonkeyPatch) -> None:
     folder, seen = str(settings.ROOT / "plugins" / "backbone" / "mini" / "weights"), []
     for workers in (0, 1):

@@ -236,6 +236,7 @@ def test_two_ranks_leave_what_is_not_trained_as_it_is(
     assert not torch.equal(after[moved], before[moved])
 
 
+@pytest.mark.slow
 def test_a_dead_worker_is_told_at_once() -> None:
     made = Feed(str(settings.ROOT / "plugins" / "backbone" / "mini" / "weights"), 1, Place(0))
     for worker in made.workers:

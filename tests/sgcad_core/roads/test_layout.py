@@ -151,6 +151,7 @@ def test_every_layout_gives_a_sound_spec(chosen: list[Leg], places: list[tuple[i
     assert sum("access" in r.id for r in spec.roads) == sum(2 if side == "both" else 1 for _, side, _ in places)
 
 
+@pytest.mark.slow
 @given(legs)
 @settings(max_examples=25, deadline=None)
 def test_every_layout_compiles_to_one_network_with_its_lanes(chosen: list[Leg]) -> None:

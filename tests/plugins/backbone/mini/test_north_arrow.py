@@ -97,6 +97,7 @@ def test_an_empty_sheet_stays_as_it_is() -> None:
     assert finder.upright(image) is image
 
 
+@pytest.mark.slow
 def test_the_shipped_network_turns_made_drawings_upright() -> None:
     finder = north_arrow.load(WEIGHTS)
     assert finder is not None

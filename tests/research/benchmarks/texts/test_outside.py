@@ -41,6 +41,7 @@ def test_measured_narratives_are_others_than_those_that_train() -> None:
     assert not set(measured) & {one.id for one in shipped()}
 
 
+@pytest.mark.slow
 def test_reports_that_leave_out_much_leave_out_sides_lanes_and_maneuvers() -> None:
     found = load(outside.FOLDER / "sparse")
     lacking = {fact: sum(fact not in one.told for one in found) for fact in ("areas.0", "contact.0", "man.V1")}

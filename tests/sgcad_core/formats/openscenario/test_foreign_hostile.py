@@ -135,6 +135,7 @@ def test_one_attribute_of_many_parameters_is_bounded_too():
         play(scenario({"V1": world(0, 0)}, speeds={"V1": "$p" * 10_000}, parameters=declared))
 
 
+@pytest.mark.slow
 def test_more_than_a_machine_can_play_is_refused(monkeypatch):
     """With a tenth of the limit, which takes a tenth of the time to reach: the whole of it costs half a minute."""
     assert player.MAX_WORK == 10_000_000

@@ -32,6 +32,7 @@ def test_one_branch_alone() -> None:
     assert [only(pattern, group, n) for n in range(2)] == ["x(?:a)y", "x(?:bc)y"]
 
 
+@pytest.mark.slow
 def test_every_pattern_of_the_rules_still_compiles_without_any_of_its_alternatives() -> None:
     for record in language().rules.values():
         for pattern in record.alternatives:

@@ -6,7 +6,7 @@ import yaml
 from flows.batch import config_folder
 from flows.batch.plan_batch import batch_of
 from flows.case_files import find_cases
-from flows.study.arm_config import load_config
+from flows.study_file.arm_config import load_config
 from sgcad_core.config import load
 from sgcad_core.errors import ConfigError
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from flows.case_files.find_cases import safe_id
-from flows.study.spec import Arm, Study, is_study, load_study, study_in
+from flows.study_file.spec import Arm, Study, is_study, load_study, study_in
 from sgcad_core.config import Config, load
 from sgcad_core.errors import ConfigError
 

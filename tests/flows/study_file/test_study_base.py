@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from flows.study import plan
-from flows.study.spec import is_study, load_study
+from flows.study_file.spec import is_study, load_study
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 

@@ -26,7 +26,7 @@ import yaml
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from flows.case_files.find_cases import safe_id
-from flows.study import cross_product, study_base
+from flows.study_file import cross_product, study_base
 from sgcad_core import config_extends, settings
 from sgcad_core.config_faults import unknown_name
 from sgcad_core.errors import ConfigError

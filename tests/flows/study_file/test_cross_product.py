@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flows.case_files.find_cases import safe_id
-from flows.study import cross_product
+from flows.study_file import cross_product
 
 VALUES = st.one_of(st.booleans(), st.integers(-9, 9), st.floats(0, 2), st.text("abc/ :{}=é", max_size=8), st.none())
 OVER = st.dictionaries(

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from flows.study.spec import load_study, study_in
+from flows.study_file.spec import load_study, study_in
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError
 
