@@ -65,7 +65,7 @@ def test_every_study_loads_with_all_its_arms(file, tmp_path):
 
 
 def test_the_default_config_exists():
-    assert (settings.CONFIGS / "template.yaml").is_file()
+    assert (settings.CONFIGS / settings.default_config()).is_file()
 
 
 def test_imports_keep_their_order():
