@@ -26,9 +26,13 @@ def test_words_that_are_alike_mean_their_own_kinds(words: str, kind: str) -> Non
     assert kind_of(words, None)[0] == kind
 
 
+@pytest.mark.parametrize("longer_m", [0.0, 9.0])
 @pytest.mark.parametrize("kind", ACTORS)
-def test_the_file_has_the_mass_that_a_crash_of_its_usual_size_is_solved_with(kind: str) -> None:
-    info = actor("V1", kind, ACTORS[kind].size)
+def test_the_file_has_the_mass_that_a_crash_is_solved_with(kind: str, longer_m: float) -> None:
+    length, width = ACTORS[kind].size
+    if longer_m and not ACTORS[kind].wheeled:
+        pytest.skip("tows nothing")
+    info = actor("V1", kind, (length + longer_m, width))
     text = write_xosc([info], [trajectory("V1", [0.0, 1.0], [0.0, 0.0], [0.0, 0.0])], None)
     (made,) = (e for e in parse_xml(text, "xosc").iter() if e.get("mass"))
     assert float(made.get("mass")) == mass_kg(kind, info.length_m)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from scenariogeneration import xosc
 
 from sgcad_core.case.records import ActorInfo
-from sgcad_core.kinds import ActorRecord
+from sgcad_core.kinds import ActorRecord, mass_kg
 from sgcad_core.kinds.actors import Axles
 from sgcad_core.records.specs import BehaviorSpec, Light, Surface, Weather
 
@@ -53,7 +53,7 @@ def entity(actor: ActorInfo, minor: int) -> xosc.Vehicle | xosc.Pedestrian | xos
     else:
         bounds = record.max_speed_mps, record.max_acceleration_mps2, record.max_deceleration_mps2
         category = getattr(xosc.VehicleCategory, record.category)
-        mass = record.mass_kg if minor else None
+        mass = mass_kg(record.id, actor.length_m) if minor else None
         made = xosc.Vehicle(record.id, category, box, *_axles(actor, record.axles), *bounds, mass)
     made.add_property(*INTERPOLATION)
     return made
