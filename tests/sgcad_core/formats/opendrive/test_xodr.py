@@ -133,7 +133,7 @@ QC = paths.ROOT / ".venv-qc" / "bin" / "python"
 def test_asams_checkers_find_nothing(tmp_path):
     for name in NAMED:
         (tmp_path / f"{name}.xodr").write_text(compiled(name).xodr, encoding="utf-8")
-    command = [str(QC), str(paths.ROOT / "deploy" / "qc.py"), str(tmp_path)]
+    command = [str(QC), str(paths.ROOT / "research" / "checks" / "asam_checkers.py"), str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
