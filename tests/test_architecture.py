@@ -98,6 +98,20 @@ def test_a_file_is_short_and_says_what_it_is(file):
     assert ast.get_docstring(ast.parse(text))
 
 
+def test_docstrings_speak_of_things_not_of_whoever():
+    """Docstrings of specs that a model reads are prompts, which keep their words."""
+    pronoun = re.compile(r"\b(whoever|whom|nobody|somebody|anybody|everybody)\b|^Who\b", re.IGNORECASE)
+    files = [file for file in SOURCES if file != ROOT / "sgcad_core" / "records" / "specs.py"]
+    found = [
+        f"{file.relative_to(ROOT)}: {getattr(node, 'name', 'module')}"
+        for file in files
+        for node in ast.walk(ast.parse(file.read_text()))
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)
+        and pronoun.search(ast.get_docstring(node) or "")
+    ]
+    assert found == []
+
+
 def test_functions_are_short():
     lengths = [
         n.end_lineno - n.lineno + 1

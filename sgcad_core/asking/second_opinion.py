@@ -51,7 +51,7 @@ def with_learned_opinion(report: CrashReport) -> CrashReport:
 
 def with_model_opinion(report: CrashReport, ask: Ask) -> CrashReport:
     """The report with the model's answers to all of it; without an opinion where the model has no answer, and where
-    nobody is numbered. Raises ConfigError for weights that there are not."""
+    no vehicle is numbered. Raises ConfigError for weights that are missing."""
     if report.reading.crash.unnumbered:
         return report
     weights = load_weights(DRAWN if report.diagrams else WHOLE, KINDS)

@@ -1,7 +1,7 @@
 """Editable fields that a finding concerns, and validators that edits overrule.
 
 A validator that holds an artifact against the narrative has nothing to say where a person said otherwise: its finding
-stays as a note. What cannot be drawn, driven or simulated stays a fault, whoever asked for it.
+stays as a note. What cannot be drawn, driven or simulated stays a fault, also of a person's edit.
 """
 
 from __future__ import annotations

@@ -137,7 +137,7 @@ def _maneuvers(result: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _walker(name: str, kind: str) -> str:
-    """What somebody without a vehicle is called: by the kind where that is not the usual one of the id's letter."""
+    """The name of an actor without a vehicle: its kind where that is not the usual one of the id's letter."""
     record = ACTORS.get(kind)
     if record is not None and record.letter == name[0] and kind != kind_of_letter(name[0]):
         return record.called.partition(" ")[2]

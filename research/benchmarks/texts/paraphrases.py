@@ -5,7 +5,7 @@
 Without files: the paraphrases that rules are made with (seen) and the held-out ones, of which only totals are looked
 at; then those in the styles of other writers, of which half, by the hash of the text, is held out. A paraphrase is a
 text of a subject (V1) without numbers with what it tells: `me` and `them`, the maneuvers that are right for the subject
-and for whom it met; `other`, that actor's id; `sides`, the sides of both that may touch; `junction`.
+and for the actor that it met; `other`, that actor's id; `sides`, the sides of both that may touch; `junction`.
 Looks at the reading alone: no road is drawn and nothing is planned.
 """
 

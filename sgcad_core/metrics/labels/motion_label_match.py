@@ -42,7 +42,7 @@ class Touch(NamedTuple):
 
 def motion_marks(label: Mapping[str, Any], paths: Mapping[str, Path]) -> dict[str, float]:
     """field -> share right, for what the label states of these: number of vehicles, first headings and those
-    relative to V1, maneuvers, whether a crash comes about, between whom, on which sides."""
+    relative to V1, maneuvers, whether a crash comes about, between which actors, on which sides."""
     moving = {actor: path for actor, path in paths.items() if _VEHICLE.match(actor)}
     vehicles = [v for v in label.get("vehicles", ()) if _VEHICLE.match(str(v.get("id", "")))]
     touch = first_touch(moving)

@@ -1,11 +1,11 @@
 """A reading of a numbered report with what a model's answer to the whole report knows better, field by field.
 
 Rules and model make different errors: the rules miss wordings, the model's values are sometimes those of another
-sentence. Where both agree that is the value. Where they differ, or the rules have none, `fusion.model_right` says how
-likely the model is right, from the model's probability and from whether the text tells the rules' value outright; its
-figures are fitted on reports that are not scored (`python -m research.benchmarks.texts.outside --fit`). A road is then
-laid out with the model's legs or lanes only if everybody can drive on it as read. Every value that is taken is a fact
-of the basis "model".
+sentence. Where both agree that is the value. Where they differ, or the rules have none, `fuse_gist.model_right` says
+how likely the model is right, from the model's probability and from whether the text tells the rules' value outright;
+its figures are fitted on reports that are not scored (`python -m research.benchmarks.texts.outside --fit`). A road is
+then laid out with the model's legs or lanes only if every actor can drive on it as read. Every value that is taken is a
+fact of the basis "model".
 """
 
 from __future__ import annotations

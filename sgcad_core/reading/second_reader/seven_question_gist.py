@@ -1,7 +1,7 @@
 """A crash in seven words: what a second reader is asked beside the rules, and what the rules say of it.
 
 Of the first contact alone, and of no place. The subject is the actor V1 (the vehicle whose report it is, or the first
-by number), the other one is whom it met first, or nearly met. Knows readings and no model.
+by number), the other one is the actor that it met first, or nearly met. Knows readings and no model.
 """
 
 from __future__ import annotations

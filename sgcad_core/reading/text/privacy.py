@@ -44,7 +44,7 @@ def _parts_without_persons(sentences: Iterable[TracedText]) -> Iterator[TracedTe
     """Sentences without persons; after a dropped sentence that named the vehicle, "he" or "she" in the next one names
     it.
 
-    A dropped sentence about the driver whom a study watched leaves "is driving": all that follows is about that driver,
+    A dropped sentence about the driver of a study leaves "is driving": all that follows is about that driver,
     even in the same sentence.
     """
     named: str | None = None
