@@ -33,11 +33,10 @@ from sgcad_core.case import evidence, records
 from sgcad_core.case.records import CrashReport, Execution
 from sgcad_core.config import Config
 from sgcad_core.interfaces import Plugin
-from sgcad_core.records import facts, specs
-from sgcad_core.records import second_reader as opinion
+from sgcad_core.records import facts, second_reader, specs
 from sgcad_core.system.locks import lock_file
 
-_RECORDS = (evidence, facts, findings, opinion, records, specs, refine, schema_holds, record_json)
+_RECORDS = (evidence, facts, findings, second_reader, records, specs, refine, schema_holds, record_json)
 """Modules that define the content of kept steps; other code in them is another cache."""
 T = TypeVar("T")
 WAIT_S = 3600.0
@@ -70,7 +69,7 @@ def _opinion(config: Config) -> dict[str, Any]:
     """The inputs of a second opinion beside the report; a model's weights are part of the prompts' digest."""
     if not config.second_opinion:
         return {}
-    if config.second_opinion == opinion.LEARNED:
+    if config.second_opinion == second_reader.LEARNED:
         return _about([], asks_model=False) | {"weights": find_cases.opinion_digests(config)}
     asked = [p for p in (config.backbone, config.decoder) if p is not None]
     return _about(asked, asks_model=True) | {"prompt": config.second_opinion, "seed": config.seed}

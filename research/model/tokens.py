@@ -16,7 +16,7 @@ from random import Random
 from tokenizers import AddedToken, Regex, Tokenizer, decoders, models, pre_tokenizers, trainers
 from transformers import PreTrainedTokenizerFast
 
-from plugins.backbone.mini.processor import IMAGE as IMAGE
+from plugins.backbone.mini.drawing_view import IMAGE as IMAGE
 from research.model import answer_grammar
 
 PAD, END, ROAD, SCENARIO = "<|pad|>", "<|im_end|>", "<|road|>", "<|scenario|>"

@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+IMAGE = "<|image_pad|>"
+"""The token that stands for a drawing in a prompt."""
 PATCH = 24
 """Pixels of the sheet along a patch."""
 GRIDS = ((16, 16), (12, 20), (20, 12), (10, 24), (24, 10), (8, 32), (32, 8))

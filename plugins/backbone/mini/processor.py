@@ -26,8 +26,7 @@ from PIL import Image
 from transformers import AutoProcessor, BatchFeature, PreTrainedTokenizerFast, Qwen2_5_VLConfig
 
 from plugins.backbone.mini import patch_convnet
-
-IMAGE = "<|image_pad|>"
+from plugins.backbone.mini.drawing_view import IMAGE
 
 
 class MiniProcessor:

@@ -1,4 +1,4 @@
-"""Curves and speed limits, with the direction of travel or the road that they hold for.
+"""Curves and speed limits, with the direction of travel or the road that they hold for, and rural areas.
 
 A limit is told by a word ("the limit is 45", "posted 35", "a 40 mph zone"), or stands alone where a road is described
 ("Elm Street: one lane each way, 30 mph").
