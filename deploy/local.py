@@ -7,20 +7,18 @@ databases and logs. No service listens beyond this machine.
 from __future__ import annotations
 
 import argparse
-import os
-import signal
 import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import httpx
 import psutil
 
-from deploy import inbox, services
+from deploy import services
 from deploy.serve import serve
 from deploy.services import Ports, Service
 from flows import health
@@ -46,7 +44,7 @@ def wanted(out: Path, ports: Ports, limit: int = 3) -> tuple[Service, ...]:
     return (
         services.server(home, ports.server),
         services.mlflow(f"sqlite:///{out / 'mlflow.db'}", artifacts, ports.mlflow),
-        services.worker(home, api, ports.worker, limit=limit),
+        services.worker(home, api, ports.worker, out, limit),
     )
 
 
@@ -65,8 +63,15 @@ def up(out: Path, ports: Ports, limit: int = 3) -> dict[str, Running]:
             _deploy(folder, api)
         _start_and_wait([s for s in missing if s.name == "worker"], folder)
         _wait_for_worker(api, folder)
-        inbox.begin(api)
+        if "://" not in inbox_of(out):
+            Path(inbox_of(out)).mkdir(parents=True, exist_ok=True)
         return health.noted(folder)
+
+
+def inbox_of(out: Path) -> str:
+    """The inbox's address: the variable SGCAD_INBOX, else the folder inbox of the results."""
+    named = settings.environment("SGCAD_INBOX")
+    return named if "://" in named else str(settings.ROOT / (named or out.resolve() / "inbox"))
 
 
 def _wait_for_worker(api: str, folder: Path) -> None:
@@ -145,15 +150,19 @@ def _last_words(log: Path) -> str:
 
 
 def _deploy(folder: Path, api: str) -> None:
-    """Deploy the flows and keep a copy of the deployments."""
+    """Deploy the flows and keep a copy of what was deployed."""
     serve(api, folder / "prefect")
-    (folder / DEPLOYED).write_bytes(services.DEPLOYMENTS.read_bytes())
+    (folder / DEPLOYED).write_bytes(_deployments())
 
 
 def _is_deployed(folder: Path) -> bool:
-    """Whether prefect.yaml is unchanged since it was deployed."""
+    """Whether deployments and automation are unchanged since they were made."""
     last = folder / DEPLOYED
-    return last.is_file() and last.read_bytes() == services.DEPLOYMENTS.read_bytes()
+    return last.is_file() and last.read_bytes() == _deployments()
+
+
+def _deployments() -> bytes:
+    return services.DEPLOYMENTS.read_bytes() + b"---\n" + services.DEAD_RUNS.read_bytes()
 
 
 # ------------------------------------------------------------------ down
@@ -161,8 +170,6 @@ def down(out: Path) -> list[str]:
     """End the running services, the worker first; their names. Results and logs stay."""
     with _alone(health.services_folder(out.resolve())) as folder:
         there = health.noted(folder)
-        if "server" in there and there["server"].alive():
-            inbox.end(f"{there['server'].address}/api")
         ended = []
         for name in sorted(there, key=["worker", "mlflow", "server"].index):
             if there[name].alive():
@@ -173,16 +180,21 @@ def down(out: Path) -> list[str]:
 
 
 def stop(running: Running) -> None:
-    """End a service and its child processes: SIGTERM first, SIGKILL after STOP_S."""
-    family = [psutil.Process(running.pid), *psutil.Process(running.pid).children(recursive=True)]
-    os.kill(running.pid, signal.SIGTERM)
-    _, left = psutil.wait_procs(family, timeout=STOP_S)
-    for process in left:
-        try:
-            process.kill()
-        except psutil.NoSuchProcess:
-            continue
-    psutil.wait_procs(left, timeout=STOP_S)
+    """End a service and its child processes: SIGTERM first, then SIGKILL; the flow runs of a worker before itself."""
+    process = psutil.Process(running.pid)
+    family = [process, *process.children(recursive=True)]
+    if running.name == "worker":  # which would kill them before they have told the server
+        _signal(process.children(), psutil.Process.terminate)
+    _signal([process], psutil.Process.terminate)
+    _signal([p for p in family if p.is_running()], psutil.Process.kill)
+
+
+def _signal(processes: list[psutil.Process], how: Callable[[psutil.Process], None]) -> None:
+    """Send a signal and wait for the processes to end, at most STOP_S."""
+    for process in processes:
+        with suppress(psutil.NoSuchProcess):
+            how(process)
+    psutil.wait_procs(processes, timeout=STOP_S)
 
 
 @contextmanager
@@ -212,7 +224,7 @@ def _asked(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="Services on this machine.")
     parser.add_argument("what", choices=("up", "down", "status"))
     parser.add_argument("--out", type=Path, default=Path("runs"), help="results, databases, logs")
-    parser.add_argument("--limit", type=int, default=3, help="flow runs at a time; one of them watches the inbox")
+    parser.add_argument("--limit", type=int, default=3, help="flow runs at a time")
     for name in ("server", "mlflow", "worker"):
         parser.add_argument(f"--{name}-port", type=int, default=getattr(Ports(), name))
     return parser.parse_args(arguments)
@@ -225,7 +237,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if asked.what == "up":
             found = up(asked.out, Ports(asked.server_port, asked.mlflow_port, asked.worker_port), asked.limit)
             status(asked.out)
-            _say(f"inbox: {inbox.place()}: put in .txt, .xml, .pdf files or one folder per case; read every second")
+            _say(
+                f"inbox: {inbox_of(asked.out)}: put in .txt, .xml, .pdf files or one folder per case; read every minute"
+            )
             _say(f"results: {asked.out.resolve()}; reports go to done/, refused/, failed/, unread/ with outcome.json")
             _say(f"export PREFECT_API_URL={found['server'].address}/api")
         elif asked.what == "down":

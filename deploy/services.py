@@ -21,6 +21,7 @@ QUIET = {
 """No telemetry, no processes for MLflow's background jobs, logs line by line."""
 
 DEPLOYMENTS = settings.ROOT / "deploy" / "prefect.yaml"
+DEAD_RUNS = settings.ROOT / "deploy" / "dead_runs.yaml"
 
 
 @dataclass(frozen=True)
@@ -67,10 +68,10 @@ def mlflow(store: str, artifacts: str, port: int, host: str = "127.0.0.1") -> Se
     return Service("mlflow", _here(command), port, f"http://{host}:{port}", f"http://{host}:{port}/health", dict(QUIET))
 
 
-def worker(home: Path, api: str, port: int, name: str = "local", limit: int = 2) -> Service:
-    """A worker that runs up to `limit` flow runs at a time, each in a process of its own."""
+def worker(home: Path, api: str, port: int, out: Path, limit: int = 2) -> Service:
+    """A worker that runs up to `limit` flow runs at a time, each in a process of its own; results go to `out`."""
     command = (
-        "prefect", "worker", "start", "--pool", POOL, "--type", "process", "--name", name,
+        "prefect", "worker", "start", "--pool", POOL, "--type", "process", "--name", "local",
         "--limit", str(limit), "--with-healthcheck", "--install-policy", "never",
     )  # fmt: skip
     environment = {
@@ -78,6 +79,7 @@ def worker(home: Path, api: str, port: int, name: str = "local", limit: int = 2)
         "PREFECT_API_URL": api,
         "PREFECT_WORKER_WEBSERVER_HOST": "127.0.0.1",
         "PREFECT_WORKER_WEBSERVER_PORT": str(port),
+        "SGCAD_OUT": str(out),
         **QUIET,
     }
     address = f"work pool {POOL!r}, {limit} flow runs at a time"

@@ -1,4 +1,4 @@
-"""Descriptions of plugins and configs on stdout, for `sgcad plugins list|show` and `sgcad check`."""
+"""Descriptions of plugins and configs on stdout, for `sgcad plugins show` and `sgcad check`."""
 
 from __future__ import annotations
 
@@ -10,34 +10,17 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from flows.batch import machine
+from flows.batch.tracking import machine
 from flows.terminal import escape
 from sgcad_core.config import SINGLE, Config
+from sgcad_core.entry_points import KINDS, catalogue
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Plugin
-from sgcad_core.registry import KINDS, catalogue, installed, plugin_class
+from sgcad_core.registry import plugin_class
 
 MEMORY_MARGIN = 1.1
 """Memory needed over that of the weights, for caches and activations."""
 TRAITS = ("asks_model", "needs_prior", "gives_logits", "stage")
-
-
-def list_plugins() -> None:
-    """Print all installed plugins with their packages, and entry points without a module; imports none of them."""
-    table, gone = Table("kind", "name", "from"), []
-    for kind in KINDS:
-        there = installed(kind)
-        for name, point in catalogue(kind).items():
-            origin = f"{point.dist.name if point.dist else '?'}: {point.value}"
-            if name in there:
-                table.add_row(kind, escape(name), escape(origin))
-            else:
-                gone.append(
-                    f"{kind}/{name} is registered by {origin}, which does not exist: install that package again"
-                )
-    _console().print(table)
-    for line in gone:
-        _console().print(escape(line), soft_wrap=True)
 
 
 def show_plugin(name: str) -> None:

@@ -6,26 +6,24 @@ started; 130 interrupted. Heavy libraries are imported inside the commands, so t
 
 from __future__ import annotations
 
-import os
-import signal
+import dataclasses
 import sys
-import threading
-import traceback
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
 from flows.case.revise_command import revise
+from flows.command_end import at_end, guarded, heed_interrupts, interrupted, leave
 from flows.desk.command import desk_app
 from flows.drive.commands import drive, vary
 from flows.index_commands import index_app
-from flows.plugin_commands import plugins_app
+from flows.plugin_commands import check, plugins_app
 from flows.results.report.commands import report, score, table
 from flows.terminal import escape_plain
 from sgcad_core import settings
-from sgcad_core.errors import SgcadError
 
 if TYPE_CHECKING:
     from flows.batch.plan_batch import Batch
@@ -35,7 +33,6 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 
 DEFAULT_OUT = Path("runs")
-PATIENCE_S = 5.0
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 app.add_typer(plugins_app, name="plugins")
@@ -53,6 +50,21 @@ Jobs = Annotated[
 Encoding = Annotated[str, typer.Option("--encoding", help="Encoding of the plan in the .xosc: timed or events.")]
 Judge = Annotated[str, typer.Option("--judge", help="A second simulator, such as esmini, whose motion is compared.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Run finished cases again.")]
+Detail = Annotated[
+    str, typer.Option("--detail", help="What Prefect is shown: every step of a case (stage), or cases only (case).")
+]
+Workers = Annotated[
+    str,
+    typer.Option(
+        "--workers",
+        help="Where cases run: threads, processes, dask, or a Dask scheduler (tcp://host:8786); auto: processes, "
+        "threads with a model.",
+    ),
+]
+
+Store = Annotated[
+    str, typer.Option("--store", help="Where a Dask cluster keeps results: s3://..., gs://... (docs/scale.md).")
+]
 
 
 def _version(asked: bool) -> None:
@@ -81,11 +93,23 @@ def run(
     jobs: Jobs = None,
     fresh: Fresh = False,
     encoding: Encoding = "",
+    server: Annotated[
+        bool, typer.Option("--server", help="Show the run in Prefect; so it is where PREFECT_API_URL names a server.")
+    ] = False,
 ) -> None:
     """Turn reports into scenarios."""
+    from flows.batch import run_batch
+    from flows.batch.tracking import track_rest
     from flows.case_files.find_cases import cases_of
 
-    _batch(cases_of(reports), config, [*(overrides or ()), *_encoded(encoding)], out, jobs, fresh)
+    made = _batch(cases_of(reports), config, [*(overrides or ()), *_encoded(encoding)], out, jobs, fresh)
+    shown = server or bool(settings.prefect_url())
+    run_them = run_batch.evaluate if shown else run_batch.evaluate_alone
+    code, _ = _carry_out(made, lambda watch: run_them(made, watch.ended, on_step=watch.step))
+    if shown:
+        leave(code)
+    track_rest.start(made.out, made.configs)
+    raise typer.Exit(code)
 
 
 @app.command()
@@ -98,12 +122,20 @@ def evaluate(
     fresh: Fresh = False,
     judge: Judge = "",
     encoding: Encoding = "",
+    detail: Detail = "stage",
+    workers: Workers = "auto",
+    store: Store = "",
 ) -> None:
     """Run every case of a folder under one or several configs; the same command again resumes it."""
+    from flows.batch import run_batch
     from flows.case_files.find_cases import cases_in
+    from flows.case_files.folder_cases import left_out
 
     judged = [f"judge.name={judge}"] if judge else []
-    _batch(cases_in(cases), config, [*(overrides or ()), *judged, *_encoded(encoding)], out, jobs, fresh)
+    named = [*(overrides or ()), *judged, *_encoded(encoding)]
+    made = _batch(cases_in(cases), config, named, out, jobs, fresh).shown(detail, workers, store)
+    made = dataclasses.replace(made, left=left_out(cases))
+    leave(_carry_out(made, lambda watch: run_batch.evaluate(made, watch.ended, on_step=watch.step))[0])
 
 
 def _encoded(encoding: str) -> list[str]:
@@ -113,23 +145,26 @@ def _encoded(encoding: str) -> list[str]:
 
 def _batch(
     found: Sequence[Case], config: list[Path] | None, overrides: list[str], out: Path, jobs: int | None, fresh: bool
-) -> None:
-    """Check the whole batch, then run it and exit."""
-    from flows.batch import plan_batch, run_batch
+) -> Batch:
+    """The whole batch, checked."""
+    from flows.batch import plan_batch
 
-    made = plan_batch.batch_of(found, settings.configs_or_default(config), out, overrides, jobs, fresh)
-    raise typer.Exit(_carry_out(made, lambda watch: run_batch.evaluate(made, watch.ended, on_turn=watch.turn))[0])
+    return plan_batch.batch_of(found, settings.configs_or_default(config), out, overrides, jobs, fresh)
 
 
 def _carry_out(made: Batch, work: Callable[[BatchProgress], Result]) -> tuple[int, Result]:
     """Work under a progress bar, then print the summary; the exit code and the result of the work."""
     from flows.batch import config_folder, progress_bar, summary
+    from flows.case_files import case_folder
+    from sgcad_core.system.private_folders import deny_others
 
+    deny_others()
     for config in made.configs:
         if line := config_folder.replaced(made.out / config.name, config):
             sys.stderr.write(f"sgcad: note: {line}\n")
+        at_end.append(partial(case_folder.clear_partial, made.out / config.name, own=True))
     tally = summary.Tally(made)
-    stopped = _heed_interrupts()
+    stopped = heed_interrupts()
     try:
         with progress_bar.batch_progress(tally) as watch:
             result = work(watch)
@@ -137,7 +172,7 @@ def _carry_out(made: Batch, work: Callable[[BatchProgress], Result]) -> tuple[in
         # A library may answer the interrupt with an error of its own (pydantic does, in the midst of serializing).
         if not (stopped.is_set() or isinstance(fault, KeyboardInterrupt)):
             raise
-        _interrupted()
+        interrupted()
     summary.show(tally)
     return tally.exit_code(), result
 
@@ -151,49 +186,25 @@ def study(
     out: Out = DEFAULT_OUT,
     jobs: Jobs = None,
     fresh: Fresh = False,
-    hosts: Annotated[
-        str, typer.Option("--hosts", help="Shared storage of several hosts, an fsspec address (docs/scale.md).")
-    ] = "",
-    deployment: Annotated[str, typer.Option(help="Deployment that the hosts' workers serve.")] = "shard/shard",
+    detail: Detail = "stage",
+    workers: Workers = "auto",
+    store: Store = "",
 ) -> None:
     """Compare arms over the same cases; stages that arms share are computed once.
 
     An interrupted study resumes by its name alone, with the cases and overrides that it was started with.
     """
-    from flows.deploy import hosts_preflight
     from flows.study import plan, resume, run_study
-    from flows.study.watch_shards import Hosts
     from flows.study_file import spec
 
     known = resume.former_arguments(file, out)
     given = resume.cases_of(known, tuple(cases or ())), truth or known.truth, overrides or known.overrides
     study = spec.load_study(known.file)
     made = plan.plan(study, out, cases=given[0], truth=given[1], overrides=given[2], jobs=jobs, fresh=fresh)
-    if hosts:
-        meeting = Hosts(hosts, deployment)
-        code, submitted = _carry_out(made.batch, lambda watch: hosts_preflight.run(made, meeting, watch.ended))
-        typer.echo(hosts_preflight.resubmitted_lines(submitted))
-        raise typer.Exit(code)
-    code, cost = _carry_out(made.batch, lambda watch: run_study.run(made, watch.ended, watch.turn))
+    made = dataclasses.replace(made, batch=made.batch.shown(detail, workers, store))
+    code, cost = _carry_out(made.batch, lambda watch: run_study.run(made, watch.ended, watch.step))
     typer.echo(run_study.cost_line(made, cost))
-    raise typer.Exit(code)
-
-
-@app.command()
-def check(
-    config: Annotated[Path, typer.Argument(help="The YAML of a config or of a study.")],
-    overrides: Overrides = None,
-) -> None:
-    """Check a config, or all arms of a study, without starting anything."""
-    from flows.catalogue import describe_config
-    from flows.study import plan
-    from flows.study_file import spec
-    from flows.study_file.arm_config import load_config
-
-    if study_file := spec.study_in(config):
-        typer.echo(plan.described(spec.load_study(study_file), tuple(overrides or ())))
-        return
-    describe_config(load_config(config, tuple(overrides or ())))
+    leave(code)
 
 
 @app.command()
@@ -225,75 +236,25 @@ def explain(
 
 
 @app.command()
-def doctor(out: Out = DEFAULT_OUT) -> None:
+def doctor(
+    out: Out = DEFAULT_OUT,
+    services: Annotated[
+        bool, typer.Option("--services", help="Also run a Prefect flow on a server, and log a run to MLflow (20 s).")
+    ] = False,
+) -> None:
     """Check that every needed program and service is installed and works."""
     from flows.doctor import examine
 
-    raise typer.Exit(0 if examine(out) else 1)
+    raise typer.Exit(0 if examine(out, services) else 1)
 
 
-for command in (drive, vary, table, report, score, revise):
+for command in (check, drive, vary, table, report, score, revise):
     app.command()(command)
 
 
 def main() -> None:
     """Run the command line."""
     guarded(app)
-
-
-def guarded(command: Callable[[], object]) -> None:
-    """Run a command; every error becomes one message on stderr and an exit code."""
-    try:
-        command()
-    except SgcadError as fault:
-        _end(str(fault), 2)
-    except KeyboardInterrupt:
-        _interrupted()
-    except Exception as fault:  # noqa: BLE001 - the command line's edge
-        traceback.print_exception(fault)
-        _end(f"unexpected {type(fault).__name__}: {fault}; `sgcad doctor` checks the installation", 1)
-
-
-def _end(message: str, code: int) -> None:
-    sys.stderr.write(f"sgcad: error: {escape_plain(message)}\n")
-    _leave(code)
-
-
-def _heed_interrupts() -> threading.Event:
-    """Let the first Ctrl-C stop the batch in order, within 5 s; the second at once. The event is set by the first."""
-    stopped = threading.Event()
-    if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
-        return stopped  # the parent process ignores Ctrl-C
-
-    def first(number: int, frame: object) -> None:
-        stopped.set()
-        signal.signal(signal.SIGINT, lambda *_: _interrupted())
-        patience = threading.Timer(PATIENCE_S, _interrupted)
-        patience.daemon = True
-        patience.start()
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGINT, first)
-    return stopped
-
-
-def _interrupted() -> None:
-    sys.stderr.write("sgcad: interrupted; finished cases are kept, run the same command again to go on\n")
-    _leave(130)
-
-
-def _leave(code: int) -> None:
-    """Exit at once: threads may wait for a model or a simulator, and their processes must end too."""
-    import psutil
-
-    sys.stdout.flush()
-    sys.stderr.flush()
-    for child in psutil.Process().children(recursive=True):
-        try:
-            child.kill()
-        except psutil.NoSuchProcess:
-            continue
-    os._exit(code)
 
 
 if __name__ == "__main__":

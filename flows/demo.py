@@ -11,10 +11,12 @@ from pathlib import Path
 
 from flows.batch import progress_bar, run_batch, summary
 from flows.batch.plan_batch import Batch, batch_of
+from flows.batch.tracking import track_rest
 from flows.case import case_in_words
 from flows.case_files.case_folder import CaseFolder
 from flows.case_files.find_cases import cases_in
-from flows.cli import DEFAULT_OUT, guarded
+from flows.cli import DEFAULT_OUT
+from flows.command_end import guarded
 from flows.terminal import escape_plain
 from sgcad_core import settings
 
@@ -27,10 +29,11 @@ def main(arguments: Sequence[str] = ()) -> int:
     config = settings.default_config()
     batch = batch_of(cases_in([REPORTS]), [Path(config)], out)
     _say(f"Reads {len(batch.cases)} crash reports in {_shown(REPORTS)} and writes a road, a scenario and its replay")
-    _say(f"for each, with configs/{config}. The first start makes two databases: half a minute.")
+    _say(f"for each, with configs/{config}.")
     tally = summary.Tally(batch)
     with progress_bar.batch_progress(tally) as watch:
-        run_batch.evaluate(batch, watch.ended, on_turn=watch.turn)
+        run_batch.evaluate_alone(batch, watch.ended, on_step=watch.step)
+    track_rest.start(batch.out, batch.configs)
     for line in [*met(tally), *ending(batch)]:
         _say(line)
     return tally.exit_code()

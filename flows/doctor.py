@@ -1,4 +1,7 @@
-"""`sgcad doctor`: checks the installation; each line gives the check, its value, and the remedy of a fault."""
+"""`sgcad doctor`: checks the installation; each line gives the check, its value, and the remedy of a fault.
+
+Checks that take long run side by side, those that import much in processes of their own.
+"""
 
 from __future__ import annotations
 
@@ -8,53 +11,100 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from datetime import UTC, datetime, timedelta
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-import httpx
 import psutil
 from rich.console import Console
 
 from flows import health
-from flows.case_files import case_folder
-from flows.server import prefect_server
+from flows.service_checks import CheckFailed, can_log, logs_a_run, prefect_opens, runs_a_flow
 from flows.terminal import escape
 from sgcad_core import settings
 from sgcad_core.errors import SgcadError
-from sgcad_core.system.temp_folders import leftover_folders, temp_folder
+from sgcad_core.system.temp_folders import leftover_folders
+from sgcad_core.system.worker_process import Worker
 
 PACKAGES = (
     "prefect", "mlflow", "torch", "transformers", "eclipse-sumo", "libsumo", "scenariogeneration", "lancedb",
 )  # fmt: skip
 LOW_MB = 2000
-STALE_S = 24 * 3600
+LONGEST_S = 600.0
 CHILDREN = ("prefect.server.api.server:create_app", "flows.server", "sgcad_core.system.worker_process")
 """Modules that run only as children of another command."""
 
 
-class CheckFailed(Exception):
-    """A check failed; the message says what to do."""
+@dataclass(frozen=True)
+class Said:
+    """The outcome of a check."""
+
+    fine: bool
+    text: str
+    seconds: float = 0.0
 
 
-def examine(out: Path) -> bool:
-    """Run every check and print a line each; True if none failed."""
+def examine(out: Path, services: bool = False) -> bool:
+    """Run every check and print a line each; True if none failed.
+
+    `services`: a real flow and a real MLflow run, also where no Prefect server is named.
+    """
     settings.quiet_libraries()
     console = Console(emoji=False, highlight=False)
-    fine, wrong = True, set[str]()
-    for name, test in CHECKS.items():
-        started = time.perf_counter()
-        if stands_on := wrong & NEEDS.get(name, set()):
-            console.print(f"[yellow]not checked[/] {name}: repair {', '.join(sorted(stands_on))} first")
-            continue
-        try:
-            said, mark = test(out), "[green]ok[/]   "
-        except (CheckFailed, SgcadError, OSError, subprocess.SubprocessError) as fault:
-            said, mark, fine = str(fault), "[red]wrong[/]", False
-            wrong.add(name)
-        seconds = time.perf_counter() - started
-        console.print(f"{mark} {escape(name)}: {escape(said)} [dim]({seconds:.1f} s)[/]", soft_wrap=True)
-    return fine
+    told = {name: _said(test, out) for name, test in CHECKS.items() if name not in SIDE_BY_SIDE}
+    wrong = {name for name, said in told.items() if not said.fine}
+    pool = ThreadPoolExecutor(len(SIDE_BY_SIDE))
+    try:
+        running = {
+            name: pool.submit(_said, _test(name, services), out)
+            for name in SIDE_BY_SIDE
+            if not wrong & NEEDS.get(name, set())
+        }
+        printed = [_print(console, name, told.get(name) or running.get(name), wrong) for name in CHECKS]
+        return all(printed)
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _print(console: Console, name: str, found: Said | Future[Said] | None, wrong: set[str]) -> bool:
+    """Print a check's line when it has ended; whether nothing is wrong."""
+    if found is None:
+        first = ", ".join(sorted(wrong & NEEDS[name]))
+        console.print(f"[yellow]not checked[/] {name}: repair {first} first")
+        return True
+    said = found.result() if isinstance(found, Future) else found
+    mark = "[green]ok[/]   " if said.fine else "[red]wrong[/]"
+    console.print(f"{mark} {escape(name)}: {escape(said.text)} [dim]({said.seconds:.1f} s)[/]", soft_wrap=True)
+    return said.fine
+
+
+def _said(test: Callable[[Path], str], out: Path) -> Said:
+    started = time.perf_counter()
+    try:
+        fine, text = True, test(out)
+    except (SgcadError, OSError, subprocess.SubprocessError) as fault:
+        fine, text = False, str(fault)
+    return Said(fine, text, time.perf_counter() - started)
+
+
+def _test(name: str, services: bool) -> Callable[[Path], str]:
+    """A check to be run beside others: in a process of its own where it imports much."""
+    if name not in APART:
+        return CHECKS[name]
+    return lambda out: str(Worker("flows.doctor:check_apart").call(name, out, services, timeout_s=LONGEST_S))
+
+
+def check_apart(name: str, out: Path, services: bool) -> str:
+    """One check in this process. Raises SgcadError."""
+    settings.quiet_libraries()
+    real = services or (name == "flow" and settings.prefect_url())
+    try:
+        return (REAL if real and name in REAL else CHECKS)[name](out)
+    except (OSError, subprocess.SubprocessError) as fault:
+        raise CheckFailed(str(fault)) from fault
+    except ImportError as fault:
+        raise CheckFailed(f"cannot be imported ({fault}): pip install -e .") from fault
 
 
 def _python(out: Path) -> str:
@@ -97,6 +147,8 @@ def _configs(out: Path) -> str:
 
 
 def _writable(out: Path) -> str:
+    from flows.case_files import case_folder
+
     there = out.exists()
     case_folder.check_writable(out)
     free = shutil.disk_usage(out).free // 2**20
@@ -121,41 +173,6 @@ def _home(out: Path) -> str:
     return f"{home} can be written"
 
 
-def _flow(out: Path) -> str:
-    """Run a real flow, on the user's server or on one of this command."""
-    with prefect_server() as server:
-        if server:
-            server.wait()
-        try:
-            stale = _run_tiny_flow()
-        except (RuntimeError, httpx.HTTPError) as fault:
-            raise CheckFailed(f"no Prefect flow can run: {fault}; look at PREFECT_HOME and PREFECT_API_URL") from fault
-    said = f"a Prefect flow runs (server: {settings.prefect_url() or 'one for each command'})"
-    if stale:
-        remedy = f"prefect flow-run delete {stale[0]} ..."
-        said += f"; {len(stale)} runs of killed batches still say RUNNING, remove them: {remedy}"
-    return said
-
-
-def _run_tiny_flow() -> list[str]:
-    """Run a flow; ids of runs that have been RUNNING for longer than STALE_S, left by killed batches."""
-    from prefect import flow
-    from prefect.client.orchestration import get_client
-    from prefect.events.worker import EventsWorker
-    from prefect.settings import PREFECT_FLOWS_HEARTBEAT_FREQUENCY, temporary_settings
-
-    def tiny() -> None:
-        """Do nothing."""
-
-    with temporary_settings({PREFECT_FLOWS_HEARTBEAT_FREQUENCY: None}):
-        flow(name="doctor")(tiny)()
-    oldest = datetime.now(UTC) - timedelta(seconds=STALE_S)
-    with get_client(sync_client=True) as client:
-        runs = client.read_flow_runs(limit=200)
-    EventsWorker.drain_all(timeout=5)
-    return [str(r.id) for r in runs if r.state and r.state.is_running() and r.start_time and r.start_time < oldest]
-
-
 def _services(out: Path) -> str:
     """Check the services that `make up` started here, or those of the named server."""
     there = health.noted(health.services_folder(out))
@@ -170,22 +187,9 @@ def _services(out: Path) -> str:
     return line
 
 
-def _database(out: Path) -> str:
-    from typing import cast
-
-    from sgcad_core.interfaces import Tracker
-    from sgcad_core.registry import plugin_class
-
-    tracker = cast("Tracker", plugin_class("tracker", "mlflow")())
-    result = {"status": "generated", "seconds": {}}
-    with temp_folder("doctor") as place:
-        case = place / "config" / "case"
-        (case / "attempts").mkdir(parents=True)
-        tracker.log_case("doctor", {}, case, result)
-    return "MLflow can log a run to sqlite"
-
-
 def _leftovers(out: Path) -> str:
+    from flows.case_files import case_folder
+
     processes = [str(p.pid) for p in _orphans()]
     partial = [str(p) for p in out.glob(f"*/{case_folder.PARTIAL}*")] if out.is_dir() else []
     counted = {"half-written case folders": len(partial), "temporary folders": len(leftover_folders())}
@@ -219,10 +223,15 @@ CHECKS: dict[str, Callable[[Path], str]] = {
     "configs": _configs,
     "output": _writable,
     "home": _home,
-    "flow": _flow,
-    "tracking": _database,
+    "flow": prefect_opens,
+    "tracking": can_log,
     "services": _services,
     "leftovers": _leftovers,
 }
+REAL: dict[str, Callable[[Path], str]] = {"flow": runs_a_flow, "tracking": logs_a_run}
+"""In place of those above with `--services`, the flow also on a server that is named."""
+SIDE_BY_SIDE = ("tracking", "flow", "configs", "netconvert", "services")
+"""Checks that take long, the longest first."""
+APART = ("tracking", "flow", "configs")
 NEEDS: dict[str, set[str]] = {"flow": {"home", "output"}, "tracking": {"output"}, "services": {"home"}}
 """Checks that are skipped if one of these has failed."""

@@ -61,7 +61,7 @@ def services_folder(out: Path) -> Path:
 
 def noted(folder: Path) -> dict[str, Running]:
     """Services noted in a folder, by name; some may have ended since."""
-    found = (json.loads(file.read_text(encoding="utf-8")) for file in sorted(folder.glob("*.json")))
+    found = (json.loads(file.read_text(encoding="utf-8")) for file in sorted(folder.glob("*.json")) if file.is_file())
     return {about["name"]: Running(**about) for about in found}
 
 

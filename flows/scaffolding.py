@@ -14,9 +14,9 @@ from pathlib import Path
 import yaml
 
 from sgcad_core import config_extends
+from sgcad_core.entry_points import KINDS, catalogue
 from sgcad_core.errors import ConfigError
 from sgcad_core.near_names import did_you_mean
-from sgcad_core.registry import KINDS, catalogue
 
 TEMPLATES = Path(__file__).parent / "scaffold"
 IMPORTS = {

@@ -1,56 +1,91 @@
 """A batch as one Prefect flow run: cases times configs, tracked from one thread, in order of ending.
 
 The command line calls `run_flow` on a checked batch; a deployment's flow calls `run_inside_flow`. Import after
-`settings.quiet_libraries()` and with a server named or none wanted (flows/server.py).
+`settings.quiet_libraries()` and with a server named (flows/server.py).
 """
 
 from __future__ import annotations
 
 import time
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextvars import ContextVar
+from dataclasses import replace
 from typing import Any
 
 from prefect import flow
 from prefect.client.orchestration import get_client
 from prefect.events.worker import EventsWorker
-from prefect.futures import as_completed
 from prefect.runtime import flow_run
-from prefect.settings import PREFECT_API_URL, PREFECT_FLOWS_HEARTBEAT_FREQUENCY, temporary_settings
+from prefect.settings import (
+    PREFECT_API_URL,
+    PREFECT_CLIENT_MAX_RETRIES,
+    PREFECT_FLOWS_HEARTBEAT_FREQUENCY,
+    PREFECT_LOGGING_LEVEL,
+    temporary_settings,
+)
 
-from flows.batch import track_cases
-from flows.batch.plan_batch import Batch, Job, JobRunner
-from flows.batch.prefect_case_end import CaseReporter, case_reporter, shows_every_step
-from flows.batch.prefect_case_task import TaskBoard, case_task, plain, silence_prefect, threads
-from flows.batch.track_cases import OnEnding
+from flows.batch.case_order import watching
+from flows.batch.case_task import plain, silence_prefect, tell_crashes
+from flows.batch.lanes import Death, Stop, through, watched
+from flows.batch.plan_batch import Batch, Job
+from flows.batch.prefect_case_end import CaseReporter, case_reporter
+from flows.batch.task_runners import lanes_of
+from flows.batch.tracking import track_cases
+from flows.batch.tracking.track_cases import OnEnding
 from sgcad_core import settings
 
 MOST_NAMED = 3
 """Configs that the name of a flow run names."""
 DRAIN_S, STOP_S = 60.0, 2.0
 """Maximum wait for the last states to reach the server, at a normal end and after a fault or Ctrl-C."""
+OWN_TRIES = 1
+"""Repeated requests to a server of the command's own: one that was killed does not come back."""
+
+_work: ContextVar[Callable[[], int]] = ContextVar("work")
+"""What the flow of the command line does; its parameters are for display."""
 
 
-def run_flow(batch: Batch, plan: Sequence[Job], runner: JobRunner, on_ending: OnEnding, lasting: bool = False) -> None:
+@flow(name="evaluate", flow_run_name="{title}", persist_result=False, validate_parameters=False)
+def evaluate(title: str, configs: list[str], cases: int, out: str) -> int:
+    """Turn reports into scenarios under one or several configs; the number of cases that were run."""
+    return current_work()
+
+
+def current_work() -> int:
+    """Do the work of the flow run that this thread has begun."""
+    return _work.get()()
+
+
+def run_flow(batch: Batch, plan: Sequence[Job], on_ending: OnEnding, lasting: bool = False) -> None:
     """Run a batch as one flow run. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
 
-    With a `lasting` server the job runner starts here, so that no case starts before the flow run that shows it.
-
-    Returns when the server has every state: states are sent as events in the background, and a server of the command
-    ends with it. Prefect's heartbeat is off: its thread costs every flow a second.
+    `lasting`: the server outlives the command. Returns when the server has every state: states are sent as events in
+    the background, and a server of the command ends with it. Prefect's heartbeat is off: its thread costs every flow a
+    second.
     """
     silence_prefect()
-    with temporary_settings({PREFECT_FLOWS_HEARTBEAT_FREQUENCY: None} | _server_named()):
-        run: list[tuple[str, int]] = []
-        patience = STOP_S  # after a fault the server may be gone
+    runs: list[tuple[str, int]] = []
+    token = _work.set(lambda: _noted(batch, plan, on_ending, lasting, runs))
+    patience = STOP_S  # after a fault the server may be gone
+    quiet: dict[Any, Any] = {PREFECT_FLOWS_HEARTBEAT_FREQUENCY: None, PREFECT_LOGGING_LEVEL: "CRITICAL"}
+    quiet |= {} if lasting else {PREFECT_CLIENT_MAX_RETRIES: OWN_TRIES}
+    with temporary_settings(quiet | _server_named()):
         try:
-            flow_of = _flow(batch, plan, runner, on_ending, run, lasting)
-            flow_of([c.name for c in batch.configs], len(batch.cases), str(batch.out))
+            named = evaluate.with_options(name=batch.flow)
+            title = plain(batch.title or run_name(batch))
+            named(title, [c.name for c in batch.configs], len(batch.cases), str(batch.out))
             patience = DRAIN_S
         finally:
+            _work.reset(token)
             EventsWorker.drain_all(timeout=patience)
-        for identity, task_runs in run:
-            _settle(identity, task_runs, patience)
+        for identity, count in runs:
+            _settle(identity, count, patience)
+
+
+def _noted(batch: Batch, plan: Sequence[Job], on_ending: OnEnding, lasting: bool, runs: list[tuple[str, int]]) -> int:
+    count = run_jobs(batch, plan, on_ending, lasting)
+    runs.append((str(flow_run.id), count))
+    return count
 
 
 def _server_named() -> dict[Any, str]:
@@ -67,74 +102,50 @@ def run_name(batch: Batch) -> str:
     return f"{configs}{more} over {reports}"
 
 
-def _settle(identity: str, task_runs: int, patience: float) -> None:
-    """Wait until the server has `task_runs` ended task runs of a flow run, at most `patience` seconds."""
+def _settle(identity: str, count: int, patience: float) -> None:
+    """Wait until the server has the end of `count` tasks of cases of a flow run, at most `patience` seconds."""
     ended = {"type": {"any_": ["COMPLETED", "FAILED", "CRASHED", "CANCELLED"]}}
-    body = {"flow_runs": {"id": {"any_": [identity]}}, "task_runs": {"state": ended}}
+    body = {"flow_runs": {"id": {"any_": [identity]}}, "task_runs": {"state": ended, "name": {"like_": "/"}}}
     deadline = time.monotonic() + patience
     with get_client(sync_client=True) as client:
         while time.monotonic() < deadline:
-            if client.request("POST", "/task_runs/count", json=body).json() >= task_runs:
+            if client.request("POST", "/task_runs/count", json=body).json() >= count:
                 return
-            time.sleep(0.2)
-
-
-def _flow(
-    batch: Batch, plan: Sequence[Job], runner: JobRunner, on_ending: OnEnding, run: list[tuple[str, int]], lasting: bool
-) -> Any:
-    """The flow of one batch; its parameters are for display. Its id and number of task runs are added to `run`."""
-    task_runner = threads(batch.jobs)
-
-    @flow(
-        name=batch.flow,
-        flow_run_name=plain(batch.title or run_name(batch)),
-        task_runner=task_runner,
-        persist_result=False,
-    )
-    def evaluate(configs: list[str], cases: int, out: str) -> None:
-        if lasting:
-            runner.begin(plan)
-        task_runs = submit_and_follow(plan, runner, on_ending, lasting)
-        run.append((str(flow_run.id), task_runs))
-
-    return evaluate
+            time.sleep(0.1)
 
 
 def run_inside_flow(batch: Batch, on_ending: OnEnding, plan: Sequence[Job] | None = None) -> None:
     """Run a batch, or some of its jobs, inside the flow run of a deployment."""
-    plan, runner = batch.plan() if plan is None else plan, JobRunner(batch)
-    runner.begin(plan)
-    submit_and_follow(plan, runner, on_ending)
-    runner.close()
+    run_jobs(batch, batch.plan() if plan is None else plan, on_ending, lasting=True)
 
 
-def counts_inside_flow(batch: Batch, plan: Sequence[Job] | None = None) -> dict[str, int]:
-    """`run_inside_flow`; the number of cases by the status that they ended with."""
-    counts: Counter[str] = Counter()
-    run_inside_flow(batch, lambda _job, ending, _untracked: counts.update([ending.result["status"]]), plan)
-    return dict(counts)
+def run_jobs(batch: Batch, plan: Sequence[Job], on_ending: OnEnding, lasting: bool) -> int:
+    """Run the jobs that are left, each as a task, and track them as they end. Call it inside a flow run.
 
-
-def submit_and_follow(plan: Sequence[Job], runner: JobRunner, on_ending: OnEnding, lasting: bool = True) -> int:
-    """Submit every job, track and show it as it ends; the number of task runs. Call it inside a flow run."""
-    board = TaskBoard({job.name: job for job in plan}, runner, every=shows_every_step())
-    task = case_task(board)
-    submitted = {task.submit(job.name): job for job in plan}
+    The number of task runs whose names have a "/": of cases and their tracking. One whose process died may be unknown
+    to the server.
+    """
+    batch = replace(batch, lasting=lasting)
+    done, left = batch.opened(plan)
+    stop, deaths = Stop(), 0
     try:
-        with track_cases.tracked_batch(plan), case_reporter(lasting) as shown:
-            _follow(board, submitted, on_ending, shown)
+        with watched(watching.get(), stop), track_cases.tracked_batch(plan), case_reporter(lasting) as reporter:
+            for job, ending in done:
+                on_ending(job, ending, reporter.former(job, ending))
+            for job, outcome in through(lanes_of(batch, left), stop):
+                deaths += isinstance(outcome, Death)
+                _end(batch, job, outcome, on_ending, reporter)
+        tell_crashes()
     except BaseException:
-        runner.stop()
+        stop.ask()
         raise
-    return len(plan) + board.steps
+    return (len(left) - deaths) * (2 if batch.detail == "stage" else 1)  # the case and its tracking
 
 
-def _follow(board: TaskBoard, submitted: dict[Any, Job], on_ending: OnEnding, shown: CaseReporter) -> None:
-    for done in as_completed(list(submitted)):
-        if board.fatal:
-            raise board.fatal
-        job = submitted[done]
-        if job.name not in board.endings:
-            done.result()  # the task itself crashed: Prefect's own fault is raised
-        ending, step_runs = board.take(job.name)
-        on_ending(job, ending, shown.case(job, ending, step_runs))
+def _end(batch: Batch, job: Job, outcome: Any, on_ending: OnEnding, reporter: CaseReporter) -> None:
+    """Track and tell the end of a case: a task's state, or the death of its process."""
+    if isinstance(outcome, Death):
+        ending = batch.failed(job, outcome.reason)
+        on_ending(job, ending, reporter.former(job, ending))
+        return
+    on_ending(job, *reporter.case(job, outcome, stages=batch.detail == "stage"))

@@ -20,6 +20,7 @@ from flows.case_files.case_folder import CONFIG
 from flows.case_files.find_cases import safe_id
 from flows.study_file.cross_product import name_of
 from sgcad_core.config import Config
+from sgcad_core.system.yaml_faults import YAML_FAULTS
 
 NO_ARTIFACT = ("judge", "tracker")
 _LOGIN = re.compile(r"//[^/@\s]+@")
@@ -38,14 +39,19 @@ def write(folder: Path, config: Config) -> None:
     """Write the effective config into the folder of its results; logins in addresses are removed."""
     folder.mkdir(parents=True, exist_ok=True)
     text = yaml.safe_dump(dict(config.raw), sort_keys=False, allow_unicode=True)
-    (folder / CONFIG).write_text(_LOGIN.sub("//", text), encoding="utf-8")
+    (folder / CONFIG).write_text(without_logins(text), encoding="utf-8")
+
+
+def without_logins(text: str) -> str:
+    """The text with the logins removed from its addresses."""
+    return _LOGIN.sub("//", text)
 
 
 def replaced(folder: Path, config: Config) -> str:
     """A warning if the folder holds results of a different config of that name, else an empty text."""
     try:
         before = yaml.safe_load((folder / CONFIG).read_text(encoding="utf-8"))
-    except (OSError, ValueError, yaml.YAMLError):
+    except (OSError, *YAML_FAULTS):
         return ""
     held = sum(1 for _ in folder.glob("*/result.json"))
     keys = sorted(set(_differing(before, config.raw))) if isinstance(before, dict) else []

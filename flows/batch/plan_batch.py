@@ -1,41 +1,36 @@
-"""A batch: configs times cases, planned before anything starts, and the processes that run it.
+"""A batch: configs times cases, checked and planned before anything starts.
 
-Independent of Prefect, whose flow only waits for the jobs, so that cases run while its server is still starting. A
-config without a model runs in worker processes (numpy and XML hold the interpreter's lock); a config with a model runs
-in threads of this process, where its weights are loaded once.
+Independent of Prefect. How jobs run is said by flows/batch/lanes.py.
 """
 
 from __future__ import annotations
 
 import os
-import queue
-import threading
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import suppress
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
 from pathlib import Path
+from typing import cast, get_args
 
 from flows.batch import config_folder
-from flows.batch.worker import Order
-from flows.case import run_case
-from flows.case.run_case import Ending
-from flows.case.step_log import OnStep, ignore_step
-from flows.case_files import case_folder, find_cases, stage_cache
+from flows.batch.case_order import Detail, Order
+from flows.case.run_case import Ending, write_failed
+from flows.case_files import case_folder, find_cases, folder_cases, step_keys
 from flows.case_files.case_folder import CaseFolder
 from flows.case_files.find_cases import Case
-from flows.case_files.stage_cache import Sharing
+from flows.case_files.step_keys import StepKeys
 from flows.study_file.arm_config import load_config
-from sgcad_core.asking.refine import OnAttempt
+from sgcad_core import settings
 from sgcad_core.config import Config
-from sgcad_core.errors import ConfigError, ProcessDied, SimulationFailed
-from sgcad_core.interfaces import Backbone
+from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.system import temp_folders
-from sgcad_core.system.worker_process import Worker
 
-CASE_LIMIT_S = 600.0
-"""Time limit of a case without a model; then its process is ended and the case fails."""
+WORKERS = ("auto", "threads", "processes", "dask")
+"""Names of places where cases run (flows/batch/task_runners.py)."""
+SCHEDULERS = ("tcp://", "tls://")
+STORE = ".store"
+"""Folder of results of a Dask cluster on this machine, in the output folder."""
 MAX_JOBS = 8
 """Cases at a time without --jobs: at most the cores without a model; with one, several share its batch."""
 
@@ -48,8 +43,8 @@ class Job:
     case: Case
     digest: str
     folder: CaseFolder
-    sharing: Sharing | None = None
-    """Access to stages shared with other configs; None: stages are not shared."""
+    keys: StepKeys | None = None
+    """Keys under which its steps are shared with other configs; None: they are not."""
 
     @property
     def name(self) -> str:
@@ -62,7 +57,8 @@ class Batch:
     """Configs, cases and the output folder of a batch.
 
     `jobs` cases run at a time, those without a model in `processes`. `fresh` repeats finished cases. `flow` and
-    `title` name the flow and its run. `shelf` is the folder of stages shared by configs; None: stages are not shared.
+    `title` name the flow and its run. `shelf` is the folder of steps shared by configs; None: steps are not shared.
+    `detail` is what Prefect is shown, `workers` where cases run (flows/batch/task_runners.py).
     """
 
     configs: tuple[Config, ...]
@@ -74,6 +70,51 @@ class Batch:
     flow: str = "evaluate"
     title: str = ""
     shelf: Path | None = None
+    detail: Detail = "stage"
+    workers: str = "auto"
+    lasting: bool = False
+    """Whether the server outlives the batch."""
+    store: str = ""
+    """Address of the results of cases that run in a Dask cluster."""
+    left: tuple[str, ...] = ()
+    """Entries of the folders of cases that are no case."""
+
+    @property
+    def is_remote(self) -> bool:
+        """Whether cases run in a Dask cluster."""
+        return self.workers == "dask" or self.has_scheduler
+
+    @property
+    def has_scheduler(self) -> bool:
+        """Whether `workers` is the address of a Dask scheduler."""
+        return self.workers.startswith(SCHEDULERS)
+
+    def shown(self, detail: str, workers: str, store: str = "") -> Batch:
+        """The batch with what Prefect is shown of it and where it runs. Raises ConfigError, MissingTool."""
+        if detail not in get_args(Detail):
+            raise ConfigError(f"--detail {detail}: give {' or '.join(get_args(Detail))}")
+        if workers not in WORKERS and not workers.startswith(SCHEDULERS):
+            raise ConfigError(
+                f"--workers {workers}: give {', '.join(WORKERS)}, or the address of a Dask scheduler (tcp://host:8786)"
+            )
+        asked = replace(self, detail=cast("Detail", detail), workers=workers, store=store)
+        asked._check_remote()
+        return asked if store or not asked.is_remote else replace(asked, store=str(self.out / STORE))
+
+    def _check_remote(self) -> None:
+        if self.store and not self.is_remote:
+            raise ConfigError(f"--store {self.store}: give --workers too: dask, or a scheduler's address")
+        if self.is_remote and find_spec("prefect_dask") is None:
+            raise MissingTool(f"--workers {self.workers}: pip install 'sg-cadvlm[dask]' (prefect-dask)")
+        if self.has_scheduler and not self.store:
+            raise ConfigError(f"--workers {self.workers}: give --store, an address that every machine reaches")
+        if self.has_scheduler and not settings.prefect_url():
+            raise MissingTool(
+                f"--workers {self.workers}: a Prefect server is needed that every machine reaches: "
+                "export PREFECT_API_URL=http://.../api"
+            )
+        if self.fresh and self.store:
+            raise ConfigError("--fresh with --store: the store holds finished cases; give it another address")
 
     def plan(self) -> tuple[Job, ...]:
         """All jobs, config by config. Each report and each config is fingerprinted once."""
@@ -82,11 +123,39 @@ class Batch:
 
     def _jobs(self, config: Config, sources: Mapping[Case, str]) -> Iterator[Job]:
         digest = find_cases.config_digest(config)
-        keys = stage_cache.keys_of(config) if self.shelf else None
+        keys = step_keys.keys_of(config) if self.shelf else None
         for case, source in sources.items():
-            shared = Sharing(self.shelf, keys, source) if self.shelf and keys else None
+            shared = StepKeys(keys, case.id, source) if keys else None
             folder = CaseFolder(self.out, config.name, case.id)
             yield Job(config, case, find_cases.job_digest(source, digest), folder, shared)
+
+    def reusable(self, job: Job) -> Ending | None:
+        """The ending of a finished job, else None."""
+        result = None if self.fresh else job.folder.finished(job.digest)
+        return Ending(result, reused=True) if result is not None else None
+
+    def opened(self, plan: Sequence[Job]) -> tuple[list[tuple[Job, Ending]], list[Job]]:
+        """Write the configs of a plan; its finished jobs with their endings, and those that are left."""
+        for config in {job.config.name: job.config for job in plan}.values():
+            config_folder.write(self.out / config.name, config)
+        self.keep_left_out(plan)
+        found = [(job, self.reusable(job)) for job in plan]
+        return [(job, ending) for job, ending in found if ending], [job for job, ending in found if not ending]
+
+    def keep_left_out(self, plan: Sequence[Job]) -> None:
+        """Note in the folders of the results which entries of the folders of cases are no case."""
+        for name in {job.config.name for job in plan}:
+            folder_cases.write_left_out(self.out / name, self.left)
+
+    def failed(self, job: Job, reason: str) -> Ending:
+        """Write the folder of a job whose process died."""
+        return write_failed(job.config, job.case, self.out, job.digest, reason)
+
+    def order(self, job: Job) -> Order:
+        """The job as values that a worker takes."""
+        about = job.config.raw, job.config.name, job.case, self.out, job.digest, job.keys
+        shelf = self.store if self.store and self.shelf else self.shelf
+        return Order(*about, shelf, self.detail, job.config.backbone is not None, self.lasting)
 
 
 def batch_of(
@@ -142,126 +211,3 @@ def cores() -> int:
     """Cores this process may use, at most 8."""
     usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return max(1, min(MAX_JOBS, usable))
-
-
-# ------------------------------------------------------------------ doing it
-OnTurn = Callable[[Job, str], None]
-"""Called from any thread when an attempt of a job with a model begins; its name is such as "road[2]"."""
-
-
-@dataclass
-class JobRunner:
-    """Runs jobs: those without a model at once in the background, those with a model when they are waited for."""
-
-    batch: Batch
-    on_turn: OnTurn | None = None
-    done: frozenset[str] = frozenset()
-    """Jobs finished by an earlier runner of this command: not repeated by `fresh`."""
-    stopping: threading.Event = field(default_factory=threading.Event)
-    _begun: dict[str, Future[Ending]] = field(default_factory=dict)
-    """Jobs in worker processes whose ending was not asked for yet; an ending is handed out once."""
-    _workers: list[Worker] = field(default_factory=list)
-    _idle: queue.SimpleQueue[Worker] = field(default_factory=queue.SimpleQueue)
-    _threads: ThreadPoolExecutor | None = None
-
-    def __post_init__(self) -> None:
-        self._places = threading.Semaphore(self.batch.jobs)  # a deployed flow has more threads
-
-    def begin(self, plan: Sequence[Job]) -> None:
-        """Start jobs without a model, and load the first model needed while the server starts."""
-        for config in {job.config.name: job.config for job in plan}.values():
-            config_folder.write(self.batch.out / config.name, config)
-        asking = (job for job in plan if job.config.backbone and self.reusable(job) is None)
-        if model := next((job.config.backbone for job in asking), None):
-            threading.Thread(target=_load, args=(model,), daemon=True, name="load").start()
-        waiting = [job for job in plan if job.config.backbone is None and self.reusable(job) is None]
-        if not waiting:
-            return
-        count = min(self.batch.processes, len(waiting))
-        self._workers = [Worker("flows.batch.worker:run_in_worker") for _ in range(count)]
-        for worker in self._workers:
-            self._idle.put(worker)
-        self._threads = ThreadPoolExecutor(count, thread_name_prefix="case")
-        for job in waiting:
-            self._begun[job.name] = self._threads.submit(self._in_worker, job)
-
-    def reusable(self, job: Job) -> Ending | None:
-        """The ending of a finished job, else None."""
-        anew = self.batch.fresh and job.name not in self.done
-        result = None if anew else job.folder.finished(job.digest)
-        return Ending(result, reused=True) if result is not None else None
-
-    def finish(self, job: Job, on_attempt: OnAttempt, tell: OnStep = ignore_step) -> Ending:
-        """Wait for a job, or run it now, reporting every step. Raises MissingTool, ConfigError."""
-        if job.name in self._begun:
-            return self._begun.pop(job.name).result()
-        if done := self.reusable(job):
-            return done
-        watched = self._unless_stopped(job, on_attempt)
-        with self._places:
-            self._check()
-            about = job.config, job.case, self.batch.out, job.digest, watched
-            return run_case.run_case(*about, sharing=job.sharing, tell=tell)
-
-    def began(self, job: Job) -> bool:
-        """Whether the job runs in a worker process, which returns its steps with its ending."""
-        return job.name in self._begun
-
-    def _in_worker(self, job: Job) -> Ending:
-        self._check()
-        worker = self._idle.get()
-        try:
-            order = Order(job.config.raw, job.config.name, job.case, self.batch.out, job.digest, job.sharing)
-            ending = self._answered(worker, order)
-        except SimulationFailed as death:
-            self._check()
-            ending = run_case.write_failed(job.config, job.case, self.batch.out, job.digest, str(death))
-        finally:
-            self._idle.put(worker)
-        return ending
-
-    def _answered(self, worker: Worker, order: Order) -> Ending:
-        """A worker's ending of a case; a dead worker is replaced once, since the report may not be the cause."""
-        try:
-            ending: Ending = worker.call(order, timeout_s=CASE_LIMIT_S)
-        except ProcessDied:
-            self._check()
-            ending = worker.call(order, timeout_s=CASE_LIMIT_S)
-        return ending
-
-    def _unless_stopped(self, job: Job, on_attempt: OnAttempt) -> OnAttempt:
-        def checked(name: str, turn: Callable[[], object]) -> object:
-            self._check()
-            if self.on_turn:
-                self.on_turn(job, name)
-            return on_attempt(name, turn)  # type: ignore[arg-type]
-
-        return checked  # type: ignore[return-value]
-
-    def _check(self) -> None:
-        if self.stopping.is_set():
-            raise Interrupted
-
-    def stop(self) -> None:
-        """Start no more jobs and end the worker processes; a case's folder appears whole or not at all."""
-        self.stopping.set()
-        if self._threads:
-            self._threads.shutdown(wait=False, cancel_futures=True)
-        for worker in self._workers:
-            worker.kill()
-
-    def close(self) -> None:
-        """End the worker processes of a finished batch."""
-        if self._threads:
-            self._threads.shutdown(wait=True)
-        for worker in self._workers:
-            worker.close()
-
-
-def _load(model: Backbone) -> None:
-    with suppress(Exception):  # the first question reports the fault with its case
-        model.load()
-
-
-class Interrupted(BaseException):
-    """The batch is being stopped: this case gets no result."""

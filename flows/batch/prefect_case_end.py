@@ -9,31 +9,48 @@ import base64
 import io
 import logging
 import re
-import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from prefect import task
+from prefect.cache_policies import NO_CACHE
 from prefect.client.orchestration import get_client
+from prefect.client.schemas.objects import State
 from prefect.settings import PREFECT_API_URL, PREFECT_UI_URL
+from prefect.states import Completed, Failed
+from prefect.utilities.engine import link_state_to_task_run_result
 
-from flows.batch import track_cases
+from flows.batch.case_task import made_of
 from flows.batch.plan_batch import Job
-from flows.batch.prefect_tasks import StepRuns
+from flows.batch.remote import sent_case
+from flows.batch.tracking import track_cases
 from flows.case import case_in_words
 from flows.case.run_case import Ending
-from flows.case.step_log import Step, waits_for
+from flows.case.steps import Held
 from flows.case_files import case_links
 from flows.case_files.case_links import Served
-from sgcad_core import settings
 from sgcad_core.result import counts_of
 
-BULK_STATES = 10
-"""Batch size from which a server counts as writing states of task runs in bulk."""
 ARTIFACTS_S = 20.0
 """Time limit of a request to the server, s."""
+
+
+@dataclass(frozen=True)
+class TaskIds:
+    """Ids of a case's flow run and task run."""
+
+    flow_run: str
+    task_run: str
+
+
+@task(task_run_name="track {name}", cache_policy=NO_CACHE, persist_result=False, cache_result_in_memory=False)
+def track(name: str, ended: Any) -> State[Any]:
+    """Log a finished case to its tracker."""
+    untracked = track_cases.track_safely(*ended.value)
+    return Failed(name="Untracked", message=untracked) if untracked else Completed()
 
 
 @dataclass
@@ -45,35 +62,36 @@ class CaseReporter:
     _served: dict[Path, Served] = field(default_factory=dict)
     _silent: bool = False
 
-    def case(self, job: Job, ending: Ending, step_runs: StepRuns | None) -> str:
-        """Track a case and show its result; why it could not be tracked, or "". Raises ConfigError (`track_safely`)."""
-        if step_runs is None or ending.reused:
-            untracked = track_cases.track_safely(job, ending)
-            self._link_to_tracker(job)  # a case of an interrupted batch is logged now
-            return untracked
-        self._link(job, step_runs)
-        began = time.time()
+    def former(self, job: Job, ending: Ending) -> str:
+        """Track a case that has no task of its own: one that an interrupted batch did not log, or whose process died.
+
+        Why it could not be tracked, or "". Raises ConfigError (`track_safely`).
+        """
         untracked = track_cases.track_safely(job, ending)
-        after = waits_for("track", [step.name for step in ending.steps])
-        tracked = Step("track", began, time.time(), after=after)
-        step_runs.tell(replace(tracked, state="Untracked", kind="failed", message=untracked) if untracked else tracked)
-        self._link_to_tracker(job)
-        self.artifact(job.folder.path, job.name, ending.result, step_runs)
+        track_cases.link_to_page(job)
         return untracked
 
-    def _link(self, job: Job, step_runs: StepRuns) -> None:
+    def case(self, job: Job, state: State[Any], stages: bool) -> tuple[Ending, str]:
+        """Track a case and show its result, given its task's state; its ending, and why it could not be tracked, or "".
+
+        `stages`: tracking is a task too. Raises the task's own fault.
+        """
+        made, details = made_of(state), state.state_details
+        ending = sent_case.receive(job, made) if isinstance(made, bytes) else made
+        ids = TaskIds(str(details.flow_run_id), str(details.task_run_id))
+        self._link(job, ids)
+        untracked = _tracked_as_task(job, ending, state) if stages else track_cases.track_safely(job, ending)
+        track_cases.link_to_page(job)
+        self.artifact(job.folder.path, job.name, ending.result, ids)
+        return ending, untracked
+
+    def _link(self, job: Job, ids: TaskIds) -> None:
         """Keep the links of the case in Prefect, which its tracker shows too."""
         base = _pages() if self.lasting else ""
-        found = {"prefect": f"{base}/runs/flow-run/{step_runs.flow_run}"}
-        case_links.keep(job.folder.path, found | {"prefect_case": f"{base}/runs/task-run/{step_runs.task_run}"})
+        found = {"prefect": f"{base}/runs/flow-run/{ids.flow_run}"}
+        case_links.keep(job.folder.path, found | {"prefect_case": f"{base}/runs/task-run/{ids.task_run}"})
 
-    @staticmethod
-    def _link_to_tracker(job: Job) -> None:
-        """Keep the link to the tracker's page of the case, if this process logged it."""
-        if page := job.config.tracker.page(job.config.name, job.case.id):
-            case_links.keep(job.folder.path, {"mlflow": page})
-
-    def artifact(self, folder: Path, name: str, result: Mapping[str, Any], step_runs: StepRuns) -> None:
+    def artifact(self, folder: Path, name: str, result: Mapping[str, Any], ids: TaskIds) -> None:
         """Send a case's artifact to Prefect; `name` is the job's."""
         if self._silent:
             return
@@ -84,7 +102,7 @@ class CaseReporter:
             "key": artifact_key(name), "type": "markdown",
             "description": f"{name}: {result['status']}",
             "data": markdown(folder, result, self._served[out]),
-            "flow_run_id": step_runs.flow_run, "task_run_id": step_runs.task_run,
+            "flow_run_id": ids.flow_run, "task_run_id": ids.task_run,
         }  # fmt: skip
         try:
             self._client.request("POST", "/artifacts/", json=body, timeout=ARTIFACTS_S)
@@ -94,19 +112,16 @@ class CaseReporter:
             told.warning("Prefect accepts no artifacts (%s); cases are still run and written", fault)
 
 
-def shows_every_step() -> bool:
-    """Whether Prefect is shown every step of a case: as SGCAD_PREFECT_STEPS says ("all", "attempts"), else if the
-    server writes states in bulk. A server that writes them one by one needs 8 ms more per step, 150 ms per case.
-    """
-    if asked := settings.environment("SGCAD_PREFECT_STEPS"):
-        return asked == "all"
-    try:
-        with get_client(sync_client=True) as client:
-            told = client.request("GET", "/admin/settings", timeout=ARTIFACTS_S).json()
-        return int(told["server"]["services"]["task_run_recorder"]["batch_size"]) >= BULK_STATES
-    except Exception as fault:  # noqa: BLE001 - a server that does not tell, such as a hosted one
-        logging.getLogger(__name__).debug("the server does not tell its settings: %s", fault)
-        return False
+def _tracked_as_task(job: Job, ending: Ending, case: State[Any]) -> str:
+    """Why a case could not be tracked, or ""; a fault of the task is raised."""
+    ended = Held((job, ending))
+    link_state_to_task_run_result(case, ended)  # not `wait_for`, which lets no refused case be tracked
+    state = track(job.name, ended, return_state=True)
+    if state.name == "Untracked":
+        return str(state.message)
+    if state.is_failed() or state.is_crashed():
+        state.result()
+    return ""
 
 
 @contextmanager
@@ -145,8 +160,10 @@ def markdown(folder: Path, result: Mapping[str, Any], served: Served) -> str:
 
 def _verdict(result: Mapping[str, Any]) -> str:
     account = counts_of(result)
-    lacking = f", {account['lacking']} of {account['told']} told lacking" if account and account["lacking"] else ""
-    return f"{result['status']}{lacking}"
+    if account and account.get("sentence"):
+        return f"{result['status']}: {account['sentence']}"
+    lacking = case_in_words.lacking_counted(account)
+    return f"{result['status']}, {lacking}" if lacking else str(result["status"])
 
 
 def _told(result: Mapping[str, Any]) -> list[str]:
@@ -170,10 +187,10 @@ def _contact(result: Mapping[str, Any]) -> str:
 
 def _picture(folder: Path) -> str:
     """The case's picture, made smaller; "" if it is missing or cannot be read."""
-    from PIL import Image
+    from sgcad_core.system.pictures import opened
 
     try:
-        with Image.open(folder / "picture.png") as found:
+        with opened(folder / "picture.png") as found:
             small = found.convert("RGB")
     except OSError:
         return ""

@@ -5,6 +5,7 @@ Everything goes to stderr; stdout is for the answer.
 
 from __future__ import annotations
 
+import re
 import threading
 import time
 from collections.abc import Iterator
@@ -16,6 +17,7 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn
 
 from flows.batch.plan_batch import Job
 from flows.batch.summary import Tally
+from flows.case import case_in_words
 from flows.case.run_case import Ending
 from flows.terminal import escape
 from sgcad_core.result import counts_of
@@ -23,6 +25,8 @@ from sgcad_core.result import counts_of
 LINES_AT_ONCE = 50
 """Batches up to this size print a line per case; larger ones a line every LINE_EVERY_S."""
 LINE_EVERY_S = 10.0
+SHOWN = re.compile(r"read|(road|scenario)\[\d+\]|simulate|drive|draw")
+"""Steps of a single case that have a line each."""
 SHARE = {"road": 0.1, "scenario": 0.55}
 """Progress of a case when its first attempt of a stage begins; each further attempt adds a third of the rest."""
 
@@ -54,15 +58,18 @@ class BatchProgress:
                 )
                 self._say(about if self.total <= LINES_AT_ONCE else self.tally.in_words())
 
-    def turn(self, job: Job, attempt: str) -> None:
-        """An attempt begins, such as "road[2]"."""
-        stage, _, number = attempt.rstrip("]").partition("[")
-        start = SHARE.get(stage, 0.0)
-        room = (SHARE["scenario"] if stage == "road" else 1.0) - start
+    def step(self, job: str, step: str) -> None:
+        """A step of a job begins, such as "read" or "road[2]"."""
+        stage, _, number = step.rstrip("]").partition("[")
         with self._lock:
-            self._parts[job.name] = start + room * (1 - (2 / 3) ** (int(number or 1) - 1))
+            if stage in SHARE:
+                start, room = SHARE[stage], (SHARE["scenario"] if stage == "road" else 1.0) - SHARE[stage]
+                self._parts[job] = start + room * (1 - (2 / 3) ** (int(number or 1) - 1))
             if self.bar:
-                self._move(f"{self.tally.in_words() or 'working'}; {job.case.id}: {stage}, attempt {number or 1}")
+                told = f"{stage}, attempt {number}" if stage in SHARE else stage
+                self._move(f"{self.tally.in_words() or 'working'}; {job.partition('/')[2]}: {told}")
+            elif self.total == 1 and SHOWN.fullmatch(step):
+                self._say(f"{job}: {step}")
 
     def _move(self, told: str) -> None:
         if self.bar and self.task is not None:
@@ -84,9 +91,11 @@ class BatchProgress:
 
 
 def _lacking(ending: Ending) -> str:
-    """The number of things told that lack, in words; "" if none lacks."""
+    """The verdict where it is not that all told is there: the number of things that lack, or its word."""
     account = counts_of(ending.result)
-    return f", {account['lacking']} of {account['told']} told lacking" if account and account["lacking"] else ""
+    if account is None or account["verdict"] == "whole":
+        return ""
+    return f", {case_in_words.lacking_counted(account) or account['verdict']}"
 
 
 @contextmanager

@@ -17,6 +17,7 @@ from flows.batch.plan_batch import Batch, Job
 from flows.case import case_in_words
 from flows.case.run_case import Ending
 from flows.case_files.case_folder import CaseFolder
+from flows.case_files.folder_cases import left_out_line
 from flows.terminal import escape
 from sgcad_core.result import STATUSES, as_declared, counts_of
 
@@ -77,6 +78,7 @@ def _brief(result: Mapping[str, Any]) -> dict[str, Any]:
     if account := result.get("account"):
         lacking = [item for item in account["items"] if item["kind"] == "lacks"]
         found["account"] = {**account, "items": lacking}
+    found["disagreements"] = result.get("disagreements", ())
     return found | {"notes": [note for note in result.get("notes", ()) if note["kind"] == "limit"]}
 
 
@@ -87,6 +89,8 @@ def show(tally: Tally) -> None:
     console.print(_table(tally))
     second_simulator.show(console, {c.name: [e.result for e in tally.of(c.name)] for c in tally.batch.configs})
     told = [*_accounts(tally), *_reasons(tally), *_limits(tally), *_people(tally)]
+    if line := left_out_line(tally.batch.left):
+        console.print(escape(line), soft_wrap=True)
     for line in [*told, *case_in_words.lines([ending.result for _, ending in tally.endings])]:
         console.print(escape(line), soft_wrap=True)
     console.print(escape(f"results: {tally.batch.out}"), soft_wrap=True)

@@ -8,10 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from sgcad_core.account import Disagreement
 from sgcad_core.result import as_declared, counts_of
 
 MAX_LINES = 12
 """Of notes, and of what is lacking or assumed; all of it stands in result.json."""
+_BESIDE = (("unread", "unread"), ("contradicts itself", "contradicts"), ("guessed", "guessed"))
 
 
 def lines(results: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -21,7 +23,13 @@ def lines(results: Sequence[Mapping[str, Any]]) -> list[str]:
     result = results[0]
     told = [contact(result)] if result["collision"]["declared"] or result["collision"]["observed"] else []
     near = [approach(result["near_crash"])] if result.get("near_crash") else []
-    return [*told, *near, *account_lines(result), *(f"note: {note['text']}" for note in result["notes"][:MAX_LINES])]
+    return [
+        *told,
+        *near,
+        *account_lines(result),
+        *disagreement_lines(result),
+        *(f"note: {note['text']}" for note in result["notes"][:MAX_LINES]),
+    ]
 
 
 def account_lines(result: Mapping[str, Any]) -> list[str]:
@@ -29,13 +37,27 @@ def account_lines(result: Mapping[str, Any]) -> list[str]:
     account = counts_of(result)
     if account is None:
         return []
-    found = [
+    found = [account["sentence"]] if account.get("sentence") else []
+    found += [
         f"told {account['told']}, has {account['has']}, lacking {account['lacking']}, assumed {account['assumed']}"
     ]
     found += [f"lacking: {line}" for line in _lines(account, "lacks")[:MAX_LINES]]
+    found += [f"{name}: {line}" for name, kind in _BESIDE for line in _lines(account, kind)[:MAX_LINES]]
     assumed = _lines(account, "assumed")
     more = f"; and {len(assumed) - MAX_LINES} more" if len(assumed) > MAX_LINES else ""
     return found + ([f"assumed: {'; '.join(assumed[:MAX_LINES])}{more}"] if assumed else [])
+
+
+def disagreement_lines(result: Mapping[str, Any]) -> list[str]:
+    """Lines on what two readers of the report read differently."""
+    found = result.get("disagreements") or ()
+    lines = [f"readers differ: {Disagreement.model_validate(one).line()}" for one in found[:MAX_LINES]]
+    return lines + ([f"readers differ about {len(found) - MAX_LINES} more"] if len(found) > MAX_LINES else [])
+
+
+def lacking_counted(account: Mapping[str, Any] | None) -> str:
+    """How many of the things told lack; "" if none does."""
+    return f"{account['lacking']} of {account['told']} told lacking" if account and account["lacking"] else ""
 
 
 def lacking_in_words(account: Mapping[str, Any], most: int) -> str:

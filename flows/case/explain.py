@@ -6,13 +6,16 @@ Reads a case's folder (result.json), or a report. Asks no model.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
+from sgcad_core.account import Disagreement
 from sgcad_core.case.records import CrashReport, Fact
 from sgcad_core.errors import BadInput
+from sgcad_core.records.timeline import Act
 from sgcad_core.registry import plugin_class
 
 
@@ -22,27 +25,41 @@ def explain(source: Path) -> str:
         return _of_run(source)
     reader = plugin_class("report_reader", "auto")()
     report: CrashReport = reader.read(source)  # type: ignore[attr-defined]
-    return account(source.name, _sentences(report), report.reading.facts)
+    return account(source.name, _sentences(report), report.reading.facts, report.reading.timeline)
 
 
 def _of_run(folder: Path) -> str:
     try:
         result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
         facts = tuple(Fact.model_validate(row) for row in result["facts"])
+        acts = tuple(Act.model_validate(row) for row in result.get("timeline", ()))
         places = [(s["start"], s["end"], s["text"]) for s in result["sentences"]]
     except (OSError, ValueError, KeyError, TypeError, ValidationError) as fault:
         raise BadInput(
             f"{folder}: result.json tells no facts ({type(fault).__name__}): run the case again with this version"
         ) from fault
-    return account(f"{result['case']} ({result['config']})", places, facts)
+    told = account(f"{result['case']} ({result['config']})", places, facts, acts)
+    return "\n".join([told, *_disputed(result.get("disagreements") or ())])
+
+
+def _disputed(found: Sequence[Mapping[str, Any]]) -> list[str]:
+    """What two readers read differently, with the sentence's place and both confidences."""
+    lines = ["", "Readers differ:"] if found else []
+    for one in map(Disagreement.model_validate, found):
+        place = f", from [{one.start}-{one.end}]" if one.start is not None else ""
+        lines.append(f"    {one.line()}  (confidence {one.kept_confidence:g} against {one.confidence:g}{place})")
+    return lines
 
 
 def _sentences(report: CrashReport) -> list[tuple[int, int, str]]:
     return [(s.start, s.end, report.reading.text_of(s)) for s in report.reading.sentences]
 
 
-def account(title: str, sentences: Sequence[tuple[int, int, str]], facts: Sequence[Fact]) -> str:
-    """Each sentence (begin, end, text) with the facts that it states, then inferred facts, then what is assumed."""
+def account(
+    title: str, sentences: Sequence[tuple[int, int, str]], facts: Sequence[Fact], timeline: Sequence[Act] = ()
+) -> str:
+    """Each sentence (begin, end, text) with the facts that it states, then inferred facts, what is assumed, and the
+    timeline."""
     lines = [title, ""]
     for start, end, text in sentences:
         lines += [f"[{start}-{end}] {text}", *_rows(f for f in facts if f.status == "stated" and f.start == start)]
@@ -53,7 +70,14 @@ def account(title: str, sentences: Sequence[tuple[int, int, str]], facts: Sequen
     }
     for name, group in groups.items():
         lines += ["", f"{name}:", *_rows(group)] if group else []
+    lines += ["", "Timeline:", *(f"    {_moment(act)}" for act in timeline)] if timeline else []
     return "\n".join(lines)
+
+
+def _moment(act: Act) -> str:
+    """One act of the timeline: when, who, what, and from which words."""
+    words = f'  ("{act.words}")' if act.words else ""
+    return f"{act.phase:6s}  {act.actor}  {act.line()}{'  <- at the crash' if act.decides else ''}{words}"
 
 
 def _rows(facts: Iterator[Fact] | Sequence[Fact]) -> list[str]:

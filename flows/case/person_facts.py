@@ -1,12 +1,13 @@
 """A person's facts in a case: read beside its report, applied to what writers write; model answers that are kept.
 
 specs.json   in a case's folder: the current specs, and the attempt of each stage that they are from
-.source      path of its report, so that it can be revised
+.source      path of its report, relative to the folder, so that it can be revised
 """
 
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,6 +15,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from flows.case.facts_journal import settled
 from sgcad_core.asking.refine import Artifact, Write
 from sgcad_core.case.records import (
     Attempt,
@@ -37,15 +39,18 @@ from sgcad_core.result import CaseRecord
 from sgcad_core.revision import apply_road_edits, apply_scenario_edits, read_edits, report_digest
 from sgcad_core.revision.actors import HEADING_RAD
 from sgcad_core.revision.values import value_of
-from sgcad_core.system.report_files import facts_file
+from sgcad_core.system.report_files import facts_file, read_regular
 
 SPECS = "specs.json"
 SOURCE = ".source"
+MOST_PATH = 100_000
+"""Bytes of a path."""
 
 
 def with_person_facts(report: CrashReport, source: Path, edits: tuple[Edit, ...] | None = None) -> CrashReport:
     """A report with a person's edits: `edits`, else the facts.yaml beside it. Raises BadInput."""
     if edits is None:
+        settled(source)
         file = facts_file(source)
         edits = read_edits(file, report_digest(source)) if file.is_file() else ()
     return report.model_copy(update={"edits": edits}) if edits else report
@@ -88,9 +93,16 @@ def specs_of(record: CaseRecord, as_read: dict[str, Any] | None = None) -> dict[
 def report_path(folder: Path) -> Path:
     """The path of a case's report, from its folder. Raises BadInput."""
     try:
-        return Path((folder / SOURCE).read_text(encoding="utf-8", errors="surrogateescape"))
-    except OSError as fault:
+        told = read_regular(folder / SOURCE, folder, MOST_PATH).decode("utf-8", "surrogateescape")
+    except BadInput as fault:
         raise BadInput(f"{folder}: does not say where its report is: name it with --report") from fault
+    return Path(os.path.normpath(folder.resolve() / told))
+
+
+def write_report_path(into: Path, folder: Path, source: Path) -> None:
+    """Note in the folder `into`, which becomes the case's folder `folder`, where its report lies: relative to it."""
+    told = os.path.relpath(source.resolve(), folder.resolve())
+    (into / SOURCE).write_text(told, encoding="utf-8", errors="surrogateescape")
 
 
 def disagreement(specs: Mapping[str, Any], edits: Sequence[Edit]) -> dict[str, Any]:
@@ -133,9 +145,9 @@ class Specs:
 def read_specs(folder: Path) -> Specs:
     """The specs that a case's folder keeps. Raises BadInput where there are none, or none that can be read."""
     try:
-        raw = json.loads((folder / SPECS).read_text(encoding="utf-8"))
+        raw = json.loads(read_regular(folder / SPECS, folder))
         return Specs(*_validated(raw["road"], raw["behavior"]), dict(raw["kept"]), raw.get("as_read"))
-    except (OSError, ValueError, KeyError, TypeError, ValidationError) as fault:
+    except (BadInput, ValueError, KeyError, TypeError, RecursionError) as fault:
         raise BadInput(
             f"{folder}: no {SPECS} that can be read ({type(fault).__name__}): run the case again with this version"
         ) from fault

@@ -13,7 +13,7 @@ from __future__ import annotations
 import getpass
 import hashlib
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -23,20 +23,21 @@ from typing import Any
 import yaml
 
 from flows.case import person_facts
-from flows.case.case_in_words import state_words
 from flows.case.chain import CaseRun
+from flows.case.facts_journal import both_or_neither, settle, settled
+from flows.case.revision_check import check_revision, findings_of
 from flows.case.run_case import write_run
 from flows.case_files import find_cases
 from flows.case_files.case_folder import CONFIG, CaseFolder, read_json
 from flows.case_files.find_cases import Case
-from sgcad_core.asking.refine import run_at_once
 from sgcad_core.case.records import Finding
 from sgcad_core.config import Config, build
 from sgcad_core.errors import BadInput, ConfigError, WrongEdit
-from sgcad_core.records.edits import AS_READ, Edit, effective
-from sgcad_core.result import STAGES, as_declared, result_of
+from sgcad_core.records.edits import Edit, effective
+from sgcad_core.result import STAGES, result_of
 from sgcad_core.revision.fields import CaseField, fields_of, parsed_edit
 from sgcad_core.revision.file import (
+    MOST_BYTES,
     facts_lock,
     read_edits,
     report_digest,
@@ -45,11 +46,17 @@ from sgcad_core.revision.file import (
     write_edits,
 )
 from sgcad_core.revision.finding_fields import findings_by_field
-from sgcad_core.revision.standing_edits import SOURCE
-from sgcad_core.system.report_files import facts_file
+from sgcad_core.system.report_files import facts_file, read_regular
+from sgcad_core.system.yaml_faults import YAML_FAULTS
 
+Wanted = Callable[[], bool]
 FieldValues = Mapping[str, object]
 """Field -> value, typed or as text; `AS_READ` takes a field's edits back."""
+
+
+def always() -> bool:
+    """A change that is wanted whatever happens."""
+    return True
 
 
 @dataclass(frozen=True)
@@ -107,6 +114,7 @@ def opened(folder: Path, report: Path | None = None) -> Opened:
     source = report or person_facts.report_path(folder)
     if not source.exists():
         raise BadInput(f"{source}: the report of {folder.name} is gone: put it back, or name it with --report")
+    settled(source)
     return Opened(folder, source, _config(folder.parent / CONFIG), former, person_facts.read_specs(folder))
 
 
@@ -121,8 +129,8 @@ def _config(file: Path) -> Config:
 def _built(file: Path, changed_ns: int) -> Config:
     """The config of a folder of results; plugins are built once while the file stays as it is."""
     try:
-        raw = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError) as fault:
+        raw = yaml.safe_load(read_regular(file, most=MOST_BYTES).decode("utf-8"))
+    except YAML_FAULTS as fault:
         raise ConfigError(f"{file}: no YAML ({fault}): run the case again") from fault
     if not isinstance(raw, dict):
         raise ConfigError(f"{file}: no config in it: run the case again")
@@ -149,38 +157,42 @@ def revise(
     why: str = "",
     seen: str | None = None,
     report: Path | None = None,
+    wanted: Wanted = always,
 ) -> Revised:
     """Apply a person's facts to a finished case and write its result files again.
 
     `who`: the user's name unless given. `seen`: the `stamp` of the facts that the person saw; others are refused.
-    Raises WrongEdit (nothing was changed), BadInput, ConfigError.
+    `wanted` is asked before anything is written. Raises WrongEdit (nothing was changed), BadInput, ConfigError.
     """
     started = time.perf_counter()
     case = opened(folder, report)
     new = _edits(edits, who, why)
     with facts_lock(case.source):
+        settle(case.file)
         before = _unchanged(case.edits(), seen)
         after = with_new_edits(before, new)
         if after == before:
             return _as_it_stands(case, before, started)
-        return _written(case, before, after, {edit.field for edit in new}, started)
+        return _written(case, before, after, {edit.field for edit in new}, started, wanted=wanted)
 
 
-def undo(folder: Path, *, seen: str | None = None, report: Path | None = None) -> Revised:
+def undo(folder: Path, *, seen: str | None = None, report: Path | None = None, wanted: Wanted = always) -> Revised:
     """Undo the last revision of a case's report, by any author. Raises WrongEdit where there is none."""
     started = time.perf_counter()
     case = opened(folder, report)
     with facts_lock(case.source):
+        settle(case.file)
         before = _unchanged(case.edits(), seen)
         if not before:
             raise WrongEdit(f"{case.folder.name}: there is nothing to undo: none of its facts was changed")
-        return _written(case, before, without_last_edits(before), set(), started)
+        return _written(case, before, without_last_edits(before), set(), started, wanted=wanted)
 
 
 def note(source: Path, edits: FieldValues, *, who: str = "", why: str = "") -> tuple[Edit, ...]:
     """Keep facts beside a report without running anything; the next run uses them. Raises WrongEdit, BadInput."""
     new = _edits(edits, who, why)
     with facts_lock(source):
+        settle(facts_file(source))
         digest = report_digest(source)
         after = with_new_edits(read_edits(facts_file(source), digest), new)
         write_edits(facts_file(source), after, digest)
@@ -219,21 +231,28 @@ def _unchanged(edits: tuple[Edit, ...], seen: str | None) -> tuple[Edit, ...]:
 
 
 # ------------------------------------------------------------------ running
-def _written(case: Opened, before: tuple[Edit, ...], after: tuple[Edit, ...], new: set[str], started: float) -> Revised:
+def _written(
+    case: Opened,
+    before: tuple[Edit, ...],
+    after: tuple[Edit, ...],
+    new: set[str],
+    started: float,
+    *,
+    wanted: Wanted,
+) -> Revised:
     """Run the case with other edits; keep edits and results, or neither."""
     as_read = _as_read(case, before) if after else None
-    run = CaseRun(case.config, case.case, run_at_once, edits=after, kept=_kept(case), as_read=as_read)
+    run = CaseRun(case.config, case.case, edits=after, answers=_kept(case), as_read=as_read)
     run.go()
-    findings = _findings(run)
+    findings = findings_of(run)
     result = run.result = result_of(run.record())
-    _check(case, result, findings, [e for e in after if e.field in new], undoing=not new)
-    write_edits(case.file, after, report_digest(case.source))
-    try:
+    check_revision(case.former, result, findings, [e for e in after if e.field in new], undoing=not new)
+    if not wanted():
+        raise WrongEdit(f"{case.folder.name}: this change is not waited for any more; nothing was changed")
+    with both_or_neither(case.file, case.folder):
+        write_edits(case.file, after, report_digest(case.source))
         digest = find_cases.digest_of(case.case, case.config)
         result = write_run(run, CaseFolder(case.folder.parent.parent, case.config.name, case.folder.name), digest)
-    except BaseException:
-        write_edits(case.file, before, report_digest(case.source))
-        raise
     specs = person_facts.read_specs(case.folder)
     said = findings_by_field(findings, specs.road, specs.behavior, after)
     return Revised(result, said, effective(after), time.perf_counter() - started, stamp_of(after))
@@ -251,44 +270,6 @@ def _kept(case: Opened) -> dict[str, person_facts.KeptAnswers]:
     asks = {"road": case.config.road_writer.asks_model, "scenario": case.config.scenario_writer.asks_model}
     asked = [stage for stage in STAGES if asks[stage]]
     return {stage: person_facts.read_kept_answers(case.folder, stage, case.specs.kept.get(stage, 0)) for stage in asked}
-
-
-def _findings(run: CaseRun) -> list[Finding]:
-    """Findings of the valid attempts, and the planner's notes."""
-    told = [attempt for outcome in run.outcomes.values() if (attempt := outcome.told_by)]
-    found = [finding for attempt in told for finding in attempt.findings]
-    scenario = run.record().scenario
-    notes = scenario.notes if scenario else ()
-    return [*found, *(Finding(source="planner", severity="note", what=n, where=_place(n)) for n in notes)]
-
-
-def _place(note: str) -> str:
-    """The words of a note that name its actors, as `Finding.where` has them."""
-    return note.partition(":")[0][:120]
-
-
-def _check(
-    case: Opened, result: Mapping[str, Any], findings: Sequence[Finding], new: Sequence[Edit], undoing: bool
-) -> None:
-    """Raise WrongEdit where an edit has no effect, or makes the case's result worse."""
-    asked = {edit.field for edit in new if edit.value != AS_READ}
-    void = [f for f in findings if f.source == SOURCE and f.where in asked]
-    if void:
-        lines = [f"{f.where} = {f.value}: {f.what.partition(': ')[2]}" for f in void]
-        raise WrongEdit("; ".join(lines), void)
-    if undoing and result["status"] != "failed":
-        return
-    if _standing(result) < _standing(case.former) or result["status"] == "failed":
-        given = ", ".join(f"{e.field} = {e.value}" for e in new) or "undone"
-        now, before = state_words(result), state_words(case.former)
-        raise WrongEdit(f"with {given} the case is {now}; before it was {before}; nothing was changed", findings)
-
-
-def _standing(result: Mapping[str, Any]) -> int:
-    """Rank of a result: as declared 3, generated 2, exhausted 1, no scenario 0."""
-    if result["status"] == "generated":
-        return 3 if as_declared(result) else 2
-    return {"exhausted": 1}.get(str(result["status"]), 0)
 
 
 def _as_it_stands(case: Opened, edits: tuple[Edit, ...], started: float) -> Revised:

@@ -9,14 +9,14 @@ from typing import Any
 
 from flows.case import person_facts
 from flows.case.chain import CaseRun
-from flows.case.step_log import OnStep, Step, Steps, ignore_step
+from flows.case.step_log import FILE, OnStep, StepLog, ignore_step
+from flows.case.steps import AT_ONCE, StepCalls
 from flows.case_files import case_folder
 from flows.case_files.find_cases import Case
-from flows.case_files.stage_cache import Sharing
+from flows.case_files.step_keys import StepKeys
 from flows.drive import drive_stage
 from flows.player import overview_png, player_page
 from flows.player.player_data import View
-from sgcad_core.asking.refine import Call, OnAttempt, run_at_once
 from sgcad_core.case.records import Attempt, RoadNetwork, Scenario, Trajectory
 from sgcad_core.config import Config
 from sgcad_core.errors import ConfigError
@@ -29,16 +29,10 @@ NO_MODEL = "No model was asked. Read by rules, each with the sentence [begin-end
 
 @dataclass(frozen=True)
 class Ending:
-    """A finished case as its caller sees it; the rest is on disk. `reused`: it was finished before.
-
-    Attempts and calls are those made now, without those taken from a shelf; steps are all.
-    """
+    """A finished case as its caller sees it; the rest is on disk. `reused`: it was finished before."""
 
     result: dict[str, Any]
-    attempts: tuple[Attempt, ...] = ()
-    calls: tuple[Call, ...] = ()
     reused: bool = False
-    steps: tuple[Step, ...] = ()
 
 
 def run_case(
@@ -46,21 +40,20 @@ def run_case(
     case: Case,
     out: Path,
     digest: str,
-    on_attempt: OnAttempt = run_at_once,
+    calls: StepCalls = AT_ONCE,
     *,
-    sharing: Sharing | None = None,
+    keys: StepKeys | None = None,
     tell: OnStep = ignore_step,
 ) -> Ending:
     """Run one case and write its folder. Raises MissingTool, ConfigError (a folder that cannot be written)."""
-    run = CaseRun(config, case, on_attempt, sharing, steps=Steps(tell))
+    run = CaseRun(config, case, calls, keys, StepLog(tell))
     run.go()
-    result = write_run(run, case_folder.CaseFolder(out, config.name, case.id), digest)
-    return Ending(result, tuple(run.fresh), tuple(run.calls), steps=tuple(run.steps.done))
+    return Ending(write_run(run, case_folder.CaseFolder(out, config.name, case.id), digest))
 
 
 def write_failed(config: Config, case: Case, out: Path, digest: str, reason: str) -> Ending:
     """Write the folder of a case whose process died, with the reason; the report is not read, it may be the cause."""
-    run = CaseRun(config, case, run_at_once, failure=reason)
+    run = CaseRun(config, case, failure=reason)
     return Ending(write_run(run, case_folder.CaseFolder(out, config.name, case.id), digest))
 
 
@@ -74,7 +67,7 @@ def write_run(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict
             "run again to go on where it stopped"
         ) from fault
     except Exception as fault:  # noqa: BLE001 - what cannot be drawn or written down costs one case, not the batch
-        bare = CaseRun(run.config, run.case, run_at_once, report=run.report, seconds=run.seconds)
+        bare = CaseRun(run.config, run.case, report=run.report, seconds=run.seconds)
         bare.fail(fault)
         return _write(bare, folder, digest)
 
@@ -85,9 +78,7 @@ def _write(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict[st
         result = write_files(run, partial)
         mark = digest if result["status"] != "failed" else ""
         (partial / case_folder.DIGEST).write_text(mark, encoding="utf-8")
-        (partial / person_facts.SOURCE).write_text(
-            str(run.case.source.resolve()), encoding="utf-8", errors="surrogateescape"
-        )
+        person_facts.write_report_path(partial, folder.path, run.case.source)
     return result
 
 
@@ -105,11 +96,12 @@ def write_files(run: CaseRun, folder: Path) -> dict[str, Any]:
     result["impact"] = _impact(record)
     _draw(run, folder, record, result)
     result["seconds"] = seconds_of(record)  # with those of the drawing
-    if run.sharing:
+    if run.keys:
         result["shared"] = run.shared
     specs = person_facts.specs_of(record, run.read_alone())
     result["person"] = person_facts.disagreement(specs, run.report.edits if run.report else ())
     case_folder.write_json(folder / person_facts.SPECS, specs)
+    case_folder.write_json(folder / FILE, [step.told() for step in run.log.steps])
     case_folder.write_json(folder / "result.json", result)
     return result
 

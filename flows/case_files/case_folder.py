@@ -25,6 +25,8 @@ import numpy as np
 from sgcad_core.case.records import Attempt, CrashReport, RoadNetwork, Scenario, Trajectory
 from sgcad_core.errors import BadInput, ConfigError
 from sgcad_core.result import CaseRecord
+from sgcad_core.system.private_folders import open_as_parent
+from sgcad_core.system.report_files import read_regular
 
 CONFIG = "config.yaml"
 """In the folder of a config's cases: the effective config."""
@@ -33,6 +35,7 @@ TRACKED = ".tracked"
 PARTIAL = ".partial-"
 REPLACE_TRIES = 20
 """Maximum tries to replace a folder that other processes replace at the same time."""
+MAX_JSON_BYTES = 64 * 2**20
 MIN_FREE_MB = 50
 """Free space below which nothing is started; a case takes 1 to 3 MB."""
 
@@ -71,7 +74,7 @@ class CaseFolder:
         partial = Path(tempfile.mkdtemp(prefix=f"{PARTIAL}{os.getpid()}-", dir=self.path.parent))
         try:
             yield partial
-            partial.chmod(0o755)
+            open_as_parent(partial)
             self._replace(partial)
         finally:
             shutil.rmtree(partial, ignore_errors=True)
@@ -112,9 +115,9 @@ def _unless_there() -> Iterator[None]:
 
 
 def check_writable(out: Path) -> None:
-    """Make the output folder. Raises ConfigError if it cannot be written or the disk is full."""
+    """Make the output folder, for its user alone. Raises ConfigError if it cannot be written or the disk is full."""
     try:
-        out.mkdir(parents=True, exist_ok=True)
+        out.mkdir(mode=0o700, parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(prefix=PARTIAL, dir=out):
             pass
     except OSError as fault:
@@ -124,22 +127,26 @@ def check_writable(out: Path) -> None:
         raise ConfigError(f"--out {out}: {free_mb} MB free, {MIN_FREE_MB} are needed; free some or choose another disk")
 
 
-def clear_partial(folder: Path) -> int:
-    """Remove folders that killed processes left; their number."""
-    left = [p for p in folder.glob(f"{PARTIAL}*-*") if p.is_dir() and not _alive(p.name.split("-")[1])]
+def clear_partial(folder: Path, *, own: bool = False) -> int:
+    """Remove folders that killed processes left, and with `own` those of this process; their number."""
+    mine = str(os.getpid()) if own else ""
+    found = ((p, p.name.split("-")[1]) for p in folder.glob(f"{PARTIAL}*-*") if p.is_dir())
+    left = [p for p, process in found if process == mine or not _alive(process)]
     for partial in left:
         shutil.rmtree(partial, ignore_errors=True)
     return len(left)
 
 
 def _alive(pid: str) -> bool:
+    """Whether a process runs; a killed one stays listed until its parent asks for its end."""
+    import psutil
+
     try:
-        os.kill(int(pid), 0)
-    except (ValueError, ProcessLookupError):
-        return False
-    except PermissionError:
+        return bool(psutil.Process(int(pid)).status() != psutil.STATUS_ZOMBIE)
+    except psutil.AccessDenied:
         return True
-    return True
+    except (ValueError, psutil.Error):
+        return False
 
 
 # ------------------------------------------------------------------ files
@@ -249,10 +256,10 @@ def _finite(text: str) -> float:
 
 
 def read_json(file: Path) -> dict[str, Any]:
-    """A JSON object; empty where the file is missing, still being written or no object."""
+    """A JSON object; empty where the file is missing, still being written, no regular file or no object."""
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        content = json.loads(read_regular(file, most=MAX_JSON_BYTES))
+    except (BadInput, ValueError, RecursionError):
         return {}
     return content if isinstance(content, dict) else {}
 

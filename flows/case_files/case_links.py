@@ -56,7 +56,14 @@ def served(out: Path) -> Served:
 def _running(folder: Path) -> dict[str, str]:
     try:
         return {name: address(service.address) for name, service in health.noted(folder).items() if service.alive()}
-    except (OSError, ValueError, TypeError, KeyError):  # half-written, or of another program
+    except (
+        OSError,
+        ValueError,
+        TypeError,
+        KeyError,
+        AttributeError,
+        RecursionError,
+    ):  # half-written, or of another program
         return {}
 
 
@@ -84,17 +91,23 @@ def _pid(folder: Path) -> int:
 
 def address(given: str) -> str:
     """An http address without a slash at its end; "" for anything else."""
-    parts = urlsplit(given)
+    try:
+        parts = urlsplit(given)
+    except ValueError:  # such as a broken IPv6 address
+        return ""
     return given.rstrip("/") if parts.scheme in ("http", "https") and parts.netloc else ""
 
 
 # ------------------------------------------------------------------ links.json
 def keep(folder: Path, found: Mapping[str, str]) -> None:
     """Add links to a case's folder, if it still exists."""
-    with suppress(OSError):
-        partial = folder / f".{FILE}.{os.getpid()}"
+    partial = folder / f".{FILE}.{os.getpid()}"
+    try:
         partial.write_text(json.dumps({**kept(folder), **found}, indent=1) + "\n", encoding="utf-8")
         partial.replace(folder / FILE)
+    except OSError:  # a full disk, or the folder is gone
+        with suppress(OSError):
+            partial.unlink()
 
 
 def kept(folder: Path) -> dict[str, str]:

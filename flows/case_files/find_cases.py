@@ -16,18 +16,17 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
+from flows.case_files.folder_cases import SUFFIXES, inside
 from sgcad_core import settings
 from sgcad_core.config import Config
 from sgcad_core.errors import BadInput, ConfigError
 from sgcad_core.foreign_plugins import code_fingerprint
 from sgcad_core.interfaces import Plugin
-from sgcad_core.records.second_reader import LEARNED, WEIGHTS
+from sgcad_core.records.second_reader import LEARNED, NUMBERED_WEIGHTS, WEIGHTS, WHOLE
 from sgcad_core.system.digest import file_sha256
 from sgcad_core.system.report_files import MAX_FILE_BYTES, facts_file, files_below, is_regular
 
-TEXTS = {"report.txt", "narrative.txt"}
 CODE = {".py", ".yaml"}
-SUFFIXES = {".txt", ".xml", ".pdf"}
 MAX_NAME_BYTES = 120
 """Of a case's folder name: room for a suffix within the file systems' 255."""
 MAX_READ_BYTES = 300 * 2**20
@@ -77,23 +76,8 @@ def _name(source: Path, *, whole: bool) -> str:
 
 def cases_in(folders: Iterable[Path]) -> tuple[Case, ...]:
     """All cases in the folders, ordered by name. Raises ConfigError where a folder has none."""
-    sources = [s for folder in folders for s in _inside(folder)]
+    sources = [s for folder in folders for s in inside(folder).reports]
     return cases_of(sources)
-
-
-def _inside(folder: Path) -> list[Path]:
-    if not folder.exists():
-        raise ConfigError(f"{folder}: no such folder; give a folder of case folders")
-    try:
-        entries = sorted(e for e in folder.iterdir() if not e.name.startswith(".")) if folder.is_dir() else []
-    except OSError as fault:
-        raise ConfigError(f"{folder}: cannot be listed: {fault.strerror}") from fault
-    if folder.is_file() or any(e.name.lower() in TEXTS for e in entries):
-        return [folder]
-    found = [e for e in entries if e.is_dir()] or [e for e in entries if e.suffix.lower() in SUFFIXES]
-    if not found:
-        raise ConfigError(f"{folder}: it contains no case; put each report into a folder of its own, as report.txt")
-    return found
 
 
 def safe_id(name: str) -> str:
@@ -137,8 +121,9 @@ def config_digest(config: Config) -> str:
 
 
 def opinion_digests(config: Config) -> list[str]:
-    """Digest of the learned second reader's weights, if a config uses it."""
-    return [_files_digest([WEIGHTS], WEIGHTS.parent)] if config.second_opinion == LEARNED else []
+    """Digest of the weights of the learned second reader that a config uses, if it uses one."""
+    file = {LEARNED: WEIGHTS, WHOLE: NUMBERED_WEIGHTS}.get(config.second_opinion)
+    return [_files_digest([file], file.parent)] if file else []
 
 
 def _plugins(config: Config) -> Iterator[Plugin]:

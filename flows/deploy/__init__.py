@@ -1,1 +1,1 @@
-"""What a schedule starts: inbox, nightly, study, reindex. deploy/prefect.yaml serves these flows."""
+"""What a schedule starts: inbox, nightly, study, evaluate, reindex. deploy/prefect.yaml serves these flows."""

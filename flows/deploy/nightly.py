@@ -1,17 +1,12 @@
 """The `nightly` deployment: a benchmark over a folder of cases, compared with the last accepted run.
 
-    python -m flows.deploy.nightly accept --out runs/nightly      # the last run becomes the reference
-
-Each run writes latest.json; accepting copies it to accepted.json. A drop beyond tolerance fails the flow run, whose
+Each run writes latest.json, and with `accept` accepted.json too. A drop beyond tolerance fails the flow run, whose
 message names each figure, the accepted value and the new one. Import after `settings.quiet_libraries()`.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
-import shutil
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -21,15 +16,18 @@ from typing import Any, NamedTuple
 
 from prefect import flow
 from prefect.client.schemas.objects import State
+from prefect.runtime import flow_run
 from prefect.states import Completed, Failed
 
 from flows.batch.batch_flow import run_inside_flow
-from flows.batch.machine import git_commit
-from flows.batch.plan_batch import MAX_JOBS, Batch, batch_of
-from flows.batch.prefect_case_task import threads
+from flows.batch.plan_batch import Batch, batch_of
+from flows.batch.tracking.machine import git_commit
 from flows.case_files import case_folder
 from flows.case_files import find_cases as case_sets
-from flows.deploy.defaults import cases_folder, overrides_of
+from flows.case_files.folder_cases import left_out
+from flows.deploy.case_table import CaseTable, named
+from flows.deploy.defaults import cases_folder, overrides_of, results_folder
+from flows.deploy.parameters import Config, Factor, Jobs, Share
 from flows.results.measures import GENERATION, NETWORK_MEAN, NETWORK_WRONG, TRUTH, Measure, values_of
 from flows.results.reading import Study, load_study
 from sgcad_core import settings
@@ -51,48 +49,70 @@ class Tolerance(NamedTuple):
     seconds_factor: float = 1.5
 
 
-@flow(name="nightly", task_runner=threads(MAX_JOBS), persist_result=False)
+def _name() -> str:
+    about = settings.configs_or_default(flow_run.parameters.get("configs"))
+    return named("nightly", about=about, more=f"{datetime.now(UTC):%Y-%m-%d}")
+
+
+@flow(name="nightly", flow_run_name=_name, persist_result=False)
 def nightly_flow(
-    cases: str | None = None,
-    configs: list[str] | None = None,
-    truth: str | None = None,
-    out: str = "runs/nightly",
-    overrides: list[str] | None = None,
-    jobs: int | None = None,
+    cases: Path | None = None,
+    configs: tuple[Config, ...] = (),
+    truth: Path | None = None,
+    out: Path | None = None,
+    overrides: tuple[str, ...] = (),
+    jobs: Jobs = None,
     fresh: bool = False,
-    tolerance: float = 0.02,
-    seconds_factor: float = 1.5,
+    tolerance: Share = 0.02,
+    seconds_factor: Factor = 1.5,
     accept: bool = False,
 ) -> State[Any]:
-    """Run the benchmark; Failed if a figure is worse than the accepted one by more than the tolerance.
+    """Run the benchmark; it fails if a figure is worse than the accepted one by more than the tolerance.
 
-    `cases` is a folder, by default SGCAD_CASES or the bundled reports; `truth` a folder of labels, without which only
-    figures without truth are measured. Unchanged cases are not repeated unless `fresh`. `accept` makes this run the
-    reference.
+    Args:
+        cases: Folder of cases. Empty: SGCAD_CASES, else the bundled reports.
+        configs: Configs that are measured. Empty: the default one.
+        truth: Folder of labels; without it only figures that need none are measured.
+        out: Folder of the results. Empty: the folder nightly in SGCAD_OUT, else in runs.
+        overrides: Changes of every config as key=value, such as max_attempts=3.
+        jobs: Cases at a time. Empty: by the cores, or by the model's batch.
+        fresh: Repeat unchanged cases too.
+        tolerance: Allowed worsening of shares and errors; 0.02 is two of a hundred cases.
+        seconds_factor: Allowed factor of the time a case.
+        accept: Make this run the reference.
     """
-    paths = settings.configs_or_default(configs)
-    batch = batch_of(case_sets.cases_in([cases_folder(cases)]), paths, Path(out), overrides_of(overrides), jobs, fresh)
-    if truth and not Path(truth).is_dir():
+    paths, found = settings.configs_or_default(configs), case_sets.cases_in([cases_folder(cases)])
+    batch = batch_of(found, paths, results_folder(out, "nightly"), overrides_of(overrides), jobs, fresh)
+    batch = replace(batch, left=left_out([cases_folder(cases)]))
+    batch = batch if out else _in_one_database(batch, results_folder(None) / "mlflow.db")
+    if truth and not truth.is_dir():
         raise ConfigError(f"truth {truth}: no such folder; give the one that holds <case>.json, or none")
-    run_inside_flow(batch, lambda _job, _ending, _untracked: None)  # endings are read from disk afterwards
-    latest = _about(batch, figures_of(batch, Path(truth) if truth else None))
+    table = CaseTable()
+    run_inside_flow(batch, table.add)
+    table.show()
+    latest = _about(batch, figures_of(batch, truth))
     case_folder.write_json(batch.out / LATEST, latest)
     if accept:
-        accept_latest(batch.out)
+        case_folder.write_json(batch.out / ACCEPTED, latest)
     return _judged(batch.out, latest, Tolerance(tolerance, seconds_factor=seconds_factor))
+
+
+def _in_one_database(batch: Batch, database: Path) -> Batch:
+    """The batch with trackers that name no database logging to that of all results."""
+    log = {"database": database.resolve()}
+    trackers = [
+        c.tracker.model_copy(update=log if getattr(c.tracker, "database", "") is None else {}) for c in batch.configs
+    ]
+    pairs = zip(batch.configs, trackers, strict=True)
+    return replace(batch, configs=tuple(config.model_copy(update={"tracker": tracker}) for config, tracker in pairs))
 
 
 def _judged(out: Path, latest: dict[str, Any], tolerance: Tolerance) -> State[Any]:
     if (accepted := _read(out / ACCEPTED)) is None:
-        return Completed(
-            message=f"measured; no run is accepted yet: `{_accept_command(out)}` makes this run the reference"
-        )
+        return Completed(message="measured; no run is accepted yet: run it with accept to make it the reference")
     if accepted["dataset_digest"] != latest["dataset_digest"]:
-        return Failed(
-            message=f"accepted was measured on other cases; look at {out / LATEST}, then `{_accept_command(out)}`"
-        )
-    found = list(drops(accepted["figures"], latest["figures"], tolerance))
-    if found:
+        return Failed(message=f"accepted was measured on other cases; look at {out / LATEST}, then run it with accept")
+    if found := list(drops(accepted["figures"], latest["figures"], tolerance)):
         return Failed(message="; ".join(found) + f" (accepted {accepted['measured']})")
     return Completed(message=f"no figure is worse than accepted on {accepted['measured']}")
 
@@ -145,20 +165,7 @@ def _is_worse(measure: Measure, old: float, new: float, tolerance: Tolerance) ->
     return new > old * factor if measure.better == "low" else new * factor < old
 
 
-# ------------------------------------------------------------------ what is accepted
-def accept_latest(out: Path) -> Path:
-    """Make the last run the reference; its file. Raises ConfigError where nothing was measured."""
-    if _read(out / LATEST) is None:
-        raise ConfigError(f"{out / LATEST}: no run was measured here yet; run the deployment `nightly` first")
-    partial = out / f".{ACCEPTED}.partial"
-    shutil.copyfile(out / LATEST, partial)
-    return partial.replace(out / ACCEPTED)
-
-
-def _accept_command(out: Path) -> str:
-    return f"python -m flows.deploy.nightly accept --out {out}"
-
-
+# ------------------------------------------------------------------ what is written
 def _about(batch: Batch, figures: Figures) -> dict[str, Any]:
     return {
         "measured": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -178,15 +185,3 @@ def _read(file: Path) -> dict[str, Any] | None:
     except ValueError as fault:
         raise ConfigError(f"{file}: cannot be read ({fault}); remove it and accept a run again") from fault
     return about
-
-
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Accept the last run as the reference."""
-    parser = argparse.ArgumentParser(description="Accepts the last run of the nightly benchmark as the reference.")
-    parser.add_argument("what", choices=("accept",))
-    parser.add_argument("--out", type=Path, default=Path("runs/nightly"))
-    sys.stdout.write(f"{accept_latest(parser.parse_args(arguments).out)}\n")
-
-
-if __name__ == "__main__":
-    main()

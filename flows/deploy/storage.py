@@ -1,16 +1,13 @@
 """A folder at any fsspec address (file, s3://, gs://, memory://), with the few operations that an inbox needs.
 
-Guarantees differ by store and are given per operation: `create` is exclusive on local files (a
-hard link) and where the store has conditional writes (S3, Google, Azure through fsspec's create mode); elsewhere it
-looks first and reads back afterwards, which fails for two writers in the same instant.
+One process at a time changes it. A process killed in any of them leaves what the next one can finish.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
-import os
 import shutil
-import uuid
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -20,7 +17,8 @@ from typing import Any
 from sgcad_core.errors import ConfigError, MissingTool
 
 HIDDEN = ".inbox"
-"""Folder of claims, ledger and half-written files; no reports."""
+"""Folder of the ledger, tries, lock and unfinished moves; no reports."""
+LEAVING = f"{HIDDEN}/leaving"
 _TIMES = ("mtime", "LastModified", "last_modified", "updated", "created")
 
 
@@ -45,6 +43,10 @@ class Entry:
     def newest(self) -> float:
         """Time of the last change of its files."""
         return max((f.modified for f in self.files), default=0.0)
+
+    def path(self, file: Stamp) -> str:
+        """A file's path below the address."""
+        return f"{self.name}/{file.name}" if file.name else self.name
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,8 @@ class Place:
     # ------------------------------------------------------------------ looking
     def entries(self) -> list[Entry]:
         """Files and folders directly in the address, by name, without hidden ones; empty if it does not exist."""
-        self._finish_moves()
+        for note in () if self.is_local else self._list(LEAVING):
+            self._leave(f"{LEAVING}/{note}")
         names = sorted((name, about) for name, about in self._list("").items() if not name.startswith("."))
         return [entry for name, about in names if (entry := self._entry(name, about))]
 
@@ -95,25 +98,19 @@ class Place:
     def _entry(self, name: str, about: dict[str, Any]) -> Entry | None:
         if about["type"] == "file":
             return Entry(name, False, (_stamp("", about),))
-        if about["type"] != "directory":
-            return None
-        found = self.fs.find(self.path(name), detail=True)
-        files = (_stamp(self._below(path, name), inner) for path, inner in sorted(found.items()))
-        return Entry(name, True, tuple(files))
+        return Entry(name, True, tuple(self._files(name))) if about["type"] == "directory" else None
 
-    def _list(self, name: str) -> dict[str, dict[str, Any]]:
+    def _files(self, folder: str) -> Iterator[Stamp]:
+        above = self.path(folder)
+        for path, about in sorted(self.fs.find(above, detail=True).items()):
+            yield _stamp(path[path.index(above) + len(above) + 1 :], about)
+
+    def _list(self, folder: str) -> dict[str, dict[str, Any]]:
         try:
-            listed = self.fs.ls(self.path(name) if name else self.root, detail=True)
+            listed = self.fs.ls(self.path(folder) if folder else self.root, detail=True)
         except FileNotFoundError:
             return {}
         return {PurePosixPath(about["name"].rstrip("/")).name: about for about in listed}
-
-    def names(self, folder: str) -> list[str]:
-        """Names in a folder; none if it is not there."""
-        return sorted(self._list(folder))
-
-    def _below(self, path: str, name: str) -> str:
-        return path[path.index(self.path(name)) + len(self.path(name)) + 1 :]
 
     def read(self, name: str) -> bytes | None:
         """A file's content; None if it is not there."""
@@ -123,49 +120,17 @@ class Place:
             return None
         return content
 
-    def modified(self, name: str) -> float | None:
-        """Time of a file's last change, seconds since 1970; None if it does not exist."""
-        try:
-            return _stamp("", self.fs.info(self.path(name))).modified
-        except FileNotFoundError:
-            return None
-
-    # ------------------------------------------------------------------ writing
-    def create(self, name: str, content: bytes) -> bool:
-        """Make a file; False if it exists already."""
-        target = self.path(name)
-        if self.is_local:
-            partial = self._partial(content)
-            Path(target).parent.mkdir(parents=True, exist_ok=True)
-            try:
-                os.link(partial, target)
-            except FileExistsError:
-                return False
-            finally:
-                partial.unlink()
-            return True
-        try:
-            self.fs.pipe_file(target, content, mode="create")
-        except OSError:  # the file exists, or a repeated request met the first one
-            if self.read(name) is None:
-                raise
-        return self.read(name) == content
-
+    # ------------------------------------------------------------------ changing
     def write(self, name: str, content: bytes) -> None:
         """Put a file there, whole or not at all."""
         target = self.path(name)
-        if self.is_local:
-            Path(target).parent.mkdir(parents=True, exist_ok=True)
-            self._partial(content).replace(target)
-        else:
+        if not self.is_local:
             self.fs.pipe_file(target, content)
-
-    def _partial(self, content: bytes) -> Path:
-        folder = Path(self.path(f"{HIDDEN}/partial"))
-        folder.mkdir(parents=True, exist_ok=True)
-        partial = folder / uuid.uuid4().hex
+            return
+        partial = Path(f"{target}.partial")
+        partial.parent.mkdir(parents=True, exist_ok=True)
         partial.write_bytes(content)
-        return partial
+        partial.replace(target)
 
     def remove(self, name: str) -> None:
         """Take a file away, if it is there."""
@@ -174,9 +139,8 @@ class Place:
         except FileNotFoundError:
             return
 
-    # ------------------------------------------------------------------ moving
     def move(self, entry: Entry, target: str) -> None:
-        """Move an entry, replacing the target. A killed move is finished by the next process that lists the folder."""
+        """Move an entry, replacing the target. Without renames: copied, noted, and removed by the note."""
         if self.is_local:
             goal = Path(self.path(target))
             goal.parent.mkdir(parents=True, exist_ok=True)
@@ -185,46 +149,21 @@ class Place:
             Path(self.path(entry.name)).rename(goal)
             return
         for file in entry.files:
-            below = f"/{file.name}" if file.name else ""
-            self.fs.cp_file(self.path(entry.name) + below, self.path(target) + below)
-        note = {"name": entry.name, "files": [[f.name, f.size, f.modified] for f in entry.files]}
-        marker = f"{HIDDEN}/leaving/{uuid.uuid5(uuid.NAMESPACE_URL, entry.name)}.json"
-        self.write(marker, json.dumps(note).encode())
-        self._leave(marker)
+            self.fs.cp_file(self.path(entry.path(file)), self.path(target) + entry.path(file)[len(entry.name) :])
+        files = [[f.name, f.size, f.modified] for f in entry.files]
+        note = f"{LEAVING}/{hashlib.sha256(entry.name.encode('utf-8', 'surrogateescape')).hexdigest()}.json"
+        self.write(note, json.dumps({"name": entry.name, "files": files}).encode())
+        self._leave(note)
 
-    def leaving(self) -> set[str]:
-        """Entries whose copy is complete and whose files are being removed."""
-        return {name for _, name, _ in self._moves()}
-
-    def _finish_moves(self) -> None:
-        for marker, _, _ in self._moves():
-            self._leave(marker)
-
-    def _moves(self) -> Iterator[tuple[str, str, list[Stamp]]]:
-        for file in () if self.is_local else self.names(f"{HIDDEN}/leaving"):
-            content = self.read(f"{HIDDEN}/leaving/{file}")
-            if content:
-                note = json.loads(content)
-                yield f"{HIDDEN}/leaving/{file}", note["name"], [Stamp(*values) for values in note["files"]]
-
-    def _leave(self, marker: str) -> None:
-        """Remove the files of a finished copy, unless they were written again, then the note."""
-        for found, name, files in list(self._moves()):
-            there = self.entry(name) if found == marker else None
-            for file in there.files if there else ():
-                if file in files:
-                    self.remove(f"{name}/{file.name}" if file.name else name)
-        self.remove(marker)
-
-    def sweep(self, older_than_s: float, now: float) -> None:
-        """Remove half-written files that killed processes left on local disks."""
-        folder = Path(self.path(f"{HIDDEN}/partial"))
-        for file in folder.iterdir() if self.is_local and folder.is_dir() else ():
-            try:
-                if now - file.stat().st_mtime > older_than_s:
-                    file.unlink()
-            except FileNotFoundError:
-                continue
+    def _leave(self, note: str) -> None:
+        """Remove the files of a finished copy, unless they were written again, then its note."""
+        about = json.loads(self.read(note) or '{"name": "", "files": []}')
+        copied = [Stamp(*values) for values in about["files"]]
+        there = self.entry(about["name"]) if copied else None
+        for file in there.files if there else ():
+            if there and file in copied:
+                self.remove(there.path(file))
+        self.remove(note)
 
 
 def _stamp(name: str, about: dict[str, Any]) -> Stamp:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import asyncio
+from functools import partial
+from pathlib import Path
 from typing import Any
 
+from anyio import to_thread
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
-from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
 
 from flows.desk.context import Desk
-from flows.desk.mending import CaseChanged, ChangeResult, Kind, Order, told
+from flows.desk.mending import CaseChanged, ChangeResult, DeskBusy, Kind, Order, told
 from sgcad_core.errors import SgcadError, SimulationFailed, WrongEdit
+from sgcad_core.system.temp_folders import temp_folder
 
 router = APIRouter()
 Plain = str | int | float | bool | list[str] | None
@@ -53,18 +57,31 @@ async def _change(request: Request, key: str, kind: Kind) -> Response:
         asked = ChangeRequest.model_validate_json(await request.body())
     except ValidationError as fault:
         return JSONResponse({"text": f"The page sent no change: {fault.errors()[0]['msg']}. Reload it."}, 400)
-    _, folder = await run_in_threadpool(desk.case, key)
-    order = Order(kind, folder, asked.edits, asked.who, asked.why, asked.stamp or None)
-    try:
-        done: ChangeResult = await run_in_threadpool(desk.mender.change, order, asked.version)
-    except SgcadError as fault:
-        return JSONResponse(_refusal(fault), _status(fault))
+    _, folder = await to_thread.run_sync(desk.case, key, limiter=desk.threads.pages)
+    with temp_folder("desk") as place:
+        (permit := place / "permit").touch()
+        order = Order(kind, folder, asked.edits, asked.who, asked.why, asked.stamp or None, permit)
+        watch = asyncio.create_task(_withdraw(request, permit))
+        try:
+            change = partial(desk.mender.change, order, asked.version)
+            done: ChangeResult = await to_thread.run_sync(change, limiter=desk.threads.changes)
+        except SgcadError as fault:
+            return JSONResponse(_refusal(fault), _status(fault))
+        finally:
+            watch.cancel()
     return JSONResponse({"status": done.status, "seconds": round(done.seconds, 3), "changed": done.changed,
                          "findings": {name: list(lines) for name, lines in done.findings.items()}})  # fmt: skip
 
 
+async def _withdraw(request: Request, permit: Path) -> None:
+    """Take the permit of a change back when its client goes."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
+    permit.unlink(missing_ok=True)
+
+
 def _status(fault: SgcadError) -> int:
-    return 409 if isinstance(fault, CaseChanged) else 503 if isinstance(fault, SimulationFailed) else 422
+    return 409 if isinstance(fault, CaseChanged) else 503 if isinstance(fault, SimulationFailed | DeskBusy) else 422
 
 
 def _refusal(fault: SgcadError) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,10 +12,13 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 from starlette.requests import Request
 from starlette.responses import HTMLResponse
 
-from flows.desk.index import RESULT, Index
+from flows.desk.index import Index
 from flows.desk.links import Links
 from flows.desk.mending import Mender
+from flows.desk.threads import Threads
+from flows.desk.views.folder_files import OddResult, result_in
 from flows.desk.views.list_rows import UNREADABLE, Row
+from sgcad_core.errors import BadInput
 
 STATIC = Path(__file__).parent / "static"
 TRUST_WORDS: Mapping[str, str] = {
@@ -39,6 +41,7 @@ class Desk:
     index: Index
     links: Links
     mender: Mender = field(default_factory=Mender)
+    threads: Threads = field(default_factory=Threads)
     templates: Environment = field(default_factory=lambda: _templates())
 
     @property
@@ -58,11 +61,9 @@ class Desk:
     def result(self, folder: Path) -> dict[str, Any]:
         """A case's result.json. Raises Gone where it cannot be read."""
         try:
-            result = json.loads((folder / RESULT).read_bytes())
-        except (OSError, ValueError) as fault:
-            why = "is gone" if isinstance(fault, FileNotFoundError) else "cannot be read"
-            raise CaseGone(f"{RESULT} of this case {why}; reload in a moment, or run the case again.") from fault
-        return dict(result) if isinstance(result, dict) else {}
+            return result_in(folder)
+        except (OddResult, BadInput) as fault:
+            raise CaseGone(f"{fault}; reload in a moment, or run the case again.") from fault
 
     def render(self, request: Request, name: str, status: int = 200, **context: Any) -> HTMLResponse:
         """A page from a template."""

@@ -7,8 +7,6 @@ read becomes a row that says so. Reads only.
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 import threading
 import time
@@ -16,9 +14,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from flows.desk.views.folder_files import RESULT, OddResult, result_in
 from flows.desk.views.list_rows import Row, row_of, unreadable
+from sgcad_core.errors import BadInput
 
-RESULT = "result.json"
 DEPTH = 4
 """Folders below the results folder in which cases are looked for: studies/<name>/<arm>/<case> is the deepest."""
 NO_CASES = ("mlflow-artifacts", "mlruns", "attempts")
@@ -27,8 +26,8 @@ PATIENCE_S = 0.25
 """How long a page waits for the reading thread."""
 FRESH_S = 0.3
 """Within this the folder is not looked through again."""
-LARGEST = 64 * 2**20
-"""Bytes of a result.json above which it is not read."""
+ODD = (LookupError, ValueError, TypeError, AttributeError, ArithmeticError, RecursionError)
+"""What comes of going by values that no version of this program writes."""
 Stamp = tuple[int, int]
 
 
@@ -119,14 +118,19 @@ class Index:
             known = self._rows.get(key)
         if known and known[0] == stamp:
             return known[1]
-        if stamp[1] > LARGEST:
-            return unreadable(key, f"{RESULT} has {stamp[1] / 1e6:.0f} MB, too many for a case")
         try:
-            return row_of(key, json.loads((self.root / key / RESULT).read_bytes()))
-        except OSError as fault:
-            return unreadable(key, f"{RESULT} cannot be read: {fault.strerror}")
-        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as fault:
+            return row_of(key, result_in(self.root / key))
+        except BadInput as fault:
+            return unreadable(key, f"{RESULT} is not read: {_briefly(fault, self.root)}")
+        except OddResult as fault:
+            return unreadable(key, f"{fault}; run the case again")
+        except ODD as fault:
             return unreadable(key, f"{RESULT} is no result ({type(fault).__name__}: {fault}); run the case again")
+
+
+def _briefly(fault: BadInput, root: Path) -> str:
+    """A fault without the path of the results folder."""
+    return str(fault).replace(f"{root}{os.sep}", "")
 
 
 def _stamp(file: Path | str) -> Stamp:
@@ -161,20 +165,3 @@ def _may_hold(entry: os.DirEntry[str]) -> bool:
         return not entry.name.startswith(".") and entry.is_dir(follow_symlinks=False)
     except (OSError, UnicodeEncodeError):
         return False
-
-
-# ------------------------------------------------------------------ the version of a case
-STATES = (RESULT, "facts.yaml", "player.html")
-"""Files that change when a case is run again or edited."""
-
-
-def version_of(folder: Path) -> str:
-    """Fingerprint of the case's state on disk; a page shows it, so that no edit is applied to an unseen state."""
-    found = hashlib.sha256()
-    for name in STATES:
-        try:
-            about = (folder / name).stat()
-            found.update(f"{name} {about.st_mtime_ns} {about.st_size} {about.st_ino}\n".encode())
-        except OSError:
-            found.update(f"{name} -\n".encode())
-    return found.hexdigest()[:20]

@@ -91,9 +91,11 @@ def _entries(text: str) -> list[Any]:
 def _yaml(text: str) -> Any:
     import yaml
 
+    from sgcad_core.system.yaml_faults import YAML_FAULTS
+
     try:
         return yaml.safe_load(text)
-    except yaml.YAMLError as fault:
+    except YAML_FAULTS as fault:
         raise ConfigError(f"--driver {text!r}: no YAML ({fault}); give a name or {{name: ..., field: ...}}") from fault
 
 

@@ -42,6 +42,7 @@ from sgcad_core.handover.family.variant import FamilyBasis, basis_of, member, un
 from sgcad_core.handover.script import Script
 from sgcad_core.records.specs import BehaviorSpec
 from sgcad_core.system import temp_folders
+from sgcad_core.system.private_folders import open_as_parent
 
 TRIES = 40
 """Maximum draws per member: a family with fewer draws that are the same crash is too wide."""
@@ -83,7 +84,7 @@ def write_family(family: Family, count: int, seed: int, add: Callable[[Path], No
     place = family.folder / "vary" / f"seed-{seed}"
     place.parent.mkdir(parents=True, exist_ok=True)
     with temp_folders.folder_beside(place) as partial:
-        partial.chmod(0o755)
+        open_as_parent(partial)
         _write(family, count, seed, partial)
         if add:
             add(partial)

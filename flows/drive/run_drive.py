@@ -27,6 +27,7 @@ from sgcad_core.handover.outcome import judge_drive, time_series
 from sgcad_core.handover.relative_clock import RELEASE_S
 from sgcad_core.handover.script import Script, Staging, staging_for
 from sgcad_core.system import temp_folders
+from sgcad_core.system.private_folders import open_as_parent
 
 FOLDER = "drive"
 
@@ -114,7 +115,7 @@ def _write_drive(driven: Drive, told: Mapping[str, Any], target: Path, order: Or
     """The drive's files, whole or not at all."""
     target.parent.mkdir(parents=True, exist_ok=True)
     with temp_folders.folder_beside(target) as partial:
-        partial.chmod(0o755)
+        open_as_parent(partial)
         case_folder.write_trajectories(partial / "trajectories.csv", driven.trajectories)
         if order.pages:
             from flows.drive.page import page

@@ -6,30 +6,35 @@ element and its line.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from itertools import combinations
+from dataclasses import replace
+from itertools import combinations, islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from flows.case_files import case_folder
+from flows.case_files.find_cases import safe_id
 from flows.player import player_page
 from flows.player.player_data import COLORS, Mover, View
 from flows.player.road_shapes import Drawing, Strip
-from sgcad_core.case.records import ActorInfo, CrashReport, Execution, ObservedContact, Scenario
+from sgcad_core.case.records import ActorInfo, CrashReport, Execution, Finding, ObservedContact, Scenario
 from sgcad_core.errors import ConfigError
 from sgcad_core.execution.contact import first_contact
 from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.player import Played
 from sgcad_core.formats.openscenario.reading.files import Variation, play_file, variations
-from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
+from sgcad_core.formats.openscenario.roads.road_network import roads_of
 from sgcad_core.kinds import ACTORS, kind_of_letter
-from sgcad_core.metrics import measure
+from sgcad_core.metrics.measure import ego_of, measure
 from sgcad_core.result import CaseRecord
 
 BESIDE_M = 60.0
 """Margin of the drawn map around the paths of the entities."""
+MAX_PAIR_INSTANTS = 150_000
+"""Pairs of entities times instants whose metrics are computed; a pair takes up to 0.1 ms an instant."""
 
 
 def play(file: Path, out: Path, given: Sequence[str], maps: Sequence[Path], most: int, until_s: float) -> list[Path]:
@@ -38,9 +43,10 @@ def play(file: Path, out: Path, given: Sequence[str], maps: Sequence[Path], most
     `given`: NAME=VALUE for parameters. Raises ConfigError, BadInput, InvalidOutput, Unsupported.
     """
     asked = variations(file, _parameters(given))
+    own = out / safe_id(file.stem)  # `...xosc` would else lead out of it
     written = []
-    for variation in asked[:most]:
-        folder = out / file.stem / variation.name if variation.name else out / file.stem
+    for variation in islice(asked, most):
+        folder = own / variation.name if variation.name else own
         _one(variation, folder, maps, until_s, len(asked))
         written.append(folder)
     return written
@@ -59,7 +65,7 @@ def _one(variation: Variation, folder: Path, maps: Sequence[Path], until_s: floa
     execution = Execution(
         simulator="player", trajectories=played.trajectories, contact=first_contact(played.trajectories, sizes)
     )
-    metrics = measure(execution, Scenario(actors=tuple(actors)))
+    played, metrics = _measured(played, execution, Scenario(actors=tuple(actors)))
     folder.mkdir(parents=True, exist_ok=True)
     case_folder.write_trajectories(folder / "trajectories.csv", played.trajectories)
     case_folder.write_json(folder / "contacts.json", [c.model_dump() for c in _contacts(played, sizes)])
@@ -67,6 +73,22 @@ def _one(variation: Variation, folder: Path, maps: Sequence[Path], until_s: floa
     case_folder.write_json(folder / "played.json", _played_row(variation, played, of))
     view = _view(variation, played, execution, metrics, actors, xodr)
     (folder / "player.html").write_text(player_page.page(view), encoding="utf-8")
+
+
+def _measured(played: Played, execution: Execution, scenario: Scenario) -> tuple[Played, dict[str, Any]]:
+    """The metrics of all entities; of very many those that come nearest to the first one, with a note."""
+    tracks, count = execution.trajectories, len(execution.trajectories[0].t_s)
+    most = max(2, int((1 + math.sqrt(1 + 8 * MAX_PAIR_INSTANTS / count)) / 2))
+    if len(tracks) <= most:
+        return played, measure(execution, scenario)
+    ego = ego_of(track.actor for track in tracks)
+    me = next(track for track in tracks if track.actor == ego)
+    apart = {t.actor: float(np.hypot(t.x_m - me.x_m, t.y_m - me.y_m).min()) if t is not me else -1.0 for t in tracks}
+    kept = sorted(apart, key=apart.__getitem__)[:most]
+    near = execution.model_copy(update={"trajectories": tuple(t for t in tracks if t.actor in kept)})
+    what = f"the metrics are those of the {most} of {len(tracks)} entities that come nearest to {ego}"
+    note = Finding(source="player", severity="note", what=what, remedy="play it for a shorter time (--until)")
+    return replace(played, notes=(*played.notes, note)), measure(near, scenario)
 
 
 def _contacts(played: Played, sizes: Mapping[str, tuple[float, float]]) -> list[ObservedContact]:
@@ -146,7 +168,7 @@ def _drawing(xodr: str | None, played: Played) -> Drawing:
     low, high = np.array([x.min(), y.min()]) - BESIDE_M, np.array([x.max(), y.max()]) + BESIDE_M
     strips = [
         Strip(points, width_m, cars)
-        for points, width_m, cars in XodrRoads(xodr).strips()
+        for points, width_m, cars in roads_of(xodr).strips()
         if ((points >= low) & (points <= high)).all(axis=1).any()
     ]
     return Drawing(areas=(), strips=tuple(strips), lines=())

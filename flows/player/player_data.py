@@ -14,7 +14,8 @@ from flows.player.player_highlights import facts_by_thing, road_along, road_axes
 from flows.player.road_shapes import Drawing, drawing_of
 from sgcad_core.case.records import ActorInfo, CrashReport, Floats, Scenario, Trajectory
 from sgcad_core.geometry.plane import Box, overlap_polygon
-from sgcad_core.metrics.conflict import Track, box_distance, time_to_collision
+from sgcad_core.metrics.conflict import box_distance, time_to_collision
+from sgcad_core.metrics.swept_cells import Track
 from sgcad_core.reading.text.traced_text import redactions
 from sgcad_core.result import CaseRecord
 
@@ -129,6 +130,7 @@ class View:
             "collision": {**self.result["collision"], "observed": contact or None},
             "near_crash": self.result.get("near_crash"),
             "account": self.result.get("account"),
+            "disagreements": self.result.get("disagreements", []),
             "redactions": redactions(self.report.places),
             "network": self.result["network"],
             "drawing": _drawing(self.drawing, road_axes(self.result.get("facts", ()))),

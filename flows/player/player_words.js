@@ -67,10 +67,11 @@
   $("about").textContent = `config ${data.config} · ${data.status} · attempts: road ${data.attempts.road}, scenario ${data.attempts.scenario} · ${Object.values(data.seconds).reduce((a, b) => a + b, 0).toFixed(1)} s`;
   const account = data.account && data.account.verdict !== "none" ? data.account : null;
   if (account) {                                         // what is told and there, told and lacking, assumed: first thing
-    const whole = account.verdict === "whole", of = (kind) => account.items.filter((i) => i.kind === kind);
+    const whole = account.verdict === "whole", disputed = data.disagreements || [], of = (kind) => account.items.filter((i) => i.kind === kind);
     $("account").hidden = false; $("account").open = !whole; $("account").className = whole ? "whole" : "amber";
-    $("account").firstElementChild.textContent = (whole ? `✓ Nothing that was found to be told is lacking: ${account.has} things told are there` : `⚠ ${account.lacking} of ${account.told} things told are lacking`) + ` · ${account.assumed} assumed`;
-    for (const item of of("lacks")) {
+    $("account").firstElementChild.textContent = `${whole ? "✓" : "⚠"} ${account.sentence.charAt(0).toUpperCase()}${account.sentence.slice(1)}`;
+    const differing = disputed.map((d) => ({ start: d.start, text: `${d.field}: ${d.kept} (${d.kept_by}), but the ${d.by} read ${d.other}` }));
+    for (const item of [...of("lacks"), ...of("unread"), ...of("contradicts"), ...of("guessed"), ...differing]) {
       const line = make("li"), words = item.reason ? `${item.text}: ${item.reason}` : item.text;
       const sentence = data.sentences.find((s) => s.of === item.start);
       if (sentence) { const told = make("button", words); told.type = "button"; told.onclick = () => point(sentence.things, sentence); line.append(told); } else line.append(words);

@@ -12,6 +12,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.formats.xml import parse_xml
@@ -73,6 +74,15 @@ class Drawing:
 def drawing_of(net_xml: str) -> Drawing:
     """The shapes of a network. Raises InvalidOutput where it cannot be read."""
     graph, root = parse_net(net_xml), parse_xml(net_xml, "net_xml")
+    try:
+        return _drawing(graph, root)
+    except (ValueError, LookupError) as fault:
+        raise InvalidOutput(
+            f"net_xml: a place, a width or a lane that is none ({fault!s:.200}); make it anew"
+        ) from fault
+
+
+def _drawing(graph: LaneGraph, root: Any) -> Drawing:
     strips = [Strip(ln.shape, ln.width_m, ln.allows_cars) for e in graph.edges.values() for ln in e.lanes]
     strips += [Strip(c.via_shape, _width(graph, c.from_edge, c.from_lane), True) for c in graph.connections]
     lines = [line for edge in graph.edges.values() for line in _edge_lines(edge, graph)]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flows.case_files.folder_cases import left_out_line, read_left_out
 from flows.results.layouts import LAYOUTS, Layout
 from flows.results.levels import LABELS, SHOULD_REFUSE, base_of
 from flows.results.measures import Measure, study_values
@@ -108,7 +109,8 @@ def _remarks(study: Study) -> list[str]:
         told.append(f"Ground truth for {labelled} of {len(study.cases)} cases; only these count where it is needed.")
     if reference_of(study) and not study.reference:
         told.append(f"The study names no reference; arms are compared with its first, {study.arms[0].label}.")
-    return told
+    left = {name: None for arm in study.arms for name in read_left_out(study.folder / arm.name)}
+    return [*told, *filter(None, [left_out_line(list(left))])]
 
 
 # ------------------------------------------------------------------ arms against measures

@@ -18,10 +18,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from flows.batch import machine
 from flows.batch.plan_batch import Batch, Job, batch_over
+from flows.batch.tracking import machine
 from flows.case_files import case_folder
 from flows.case_files.find_cases import Case, cases_in, config_digest, dataset_digest
+from flows.case_files.folder_cases import left_out
 from flows.study.published import publication
 from flows.study_file.arm_config import config_of
 from flows.study_file.spec import Arm, Study, fault_lines
@@ -113,8 +114,9 @@ def plan(
         raise ConfigError(fault_lines(study.file, faults))
     folder = folder_of(study.name, out)
     batch = batch_over(found, loaded, folder, jobs, fresh)
-    batch = dataclasses.replace(batch, flow="study", title=study.name, shelf=folder / SHELF)
-    return Plan(study, batch, batch.plan(), truth, tuple(cases) or study.cases, tuple(overrides))
+    folders = tuple(cases) or study.cases
+    batch = dataclasses.replace(batch, flow="study", title=study.name, shelf=folder / SHELF, left=left_out(folders))
+    return Plan(study, batch, batch.plan(), truth, folders, tuple(overrides))
 
 
 def folder_of(name: str, out: Path) -> Path:

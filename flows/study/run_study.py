@@ -12,26 +12,27 @@ import shutil
 from collections.abc import Sequence
 
 from flows.batch import run_batch
-from flows.batch.plan_batch import Job, OnTurn
+from flows.batch.case_order import OnStep
+from flows.batch.plan_batch import Job
 from flows.batch.run_batch import Cost
-from flows.batch.track_cases import OnEnding
+from flows.batch.tracking.track_cases import OnEnding
 from flows.study.plan import Plan
 
 
-def run(plan: Plan, on_ending: OnEnding, on_turn: OnTurn | None = None) -> Cost:
+def run(plan: Plan, on_ending: OnEnding, on_step: OnStep | None = None) -> Cost:
     """Write study.json and run all jobs. Raises MissingTool, ConfigError (disk full), KeyboardInterrupt.
 
     A fresh study deletes the stages shared before.
     """
     if plan.batch.fresh and plan.batch.shelf:
         shutil.rmtree(plan.batch.shelf, ignore_errors=True)
-    return run_jobs(plan, plan.jobs, on_ending, on_turn)
+    return run_jobs(plan, plan.jobs, on_ending, on_step)
 
 
-def run_jobs(plan: Plan, jobs: Sequence[Job], on_ending: OnEnding, on_turn: OnTurn | None = None) -> Cost:
+def run_jobs(plan: Plan, jobs: Sequence[Job], on_ending: OnEnding, on_step: OnStep | None = None) -> Cost:
     """Write study.json and run some of a plan's jobs as one flow run; finished ones are not repeated."""
     plan.write()
-    return run_batch.evaluate(plan.batch, on_ending, jobs, on_turn)
+    return run_batch.evaluate(plan.batch, on_ending, jobs, on_step)
 
 
 def cost_line(plan: Plan, cost: Cost) -> str:

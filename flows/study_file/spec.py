@@ -31,6 +31,7 @@ from sgcad_core import config_extends, settings
 from sgcad_core.config_faults import unknown_name
 from sgcad_core.errors import ConfigError
 from sgcad_core.near_names import did_you_mean
+from sgcad_core.system.yaml_faults import YAML_FAULTS
 
 STUDIES = settings.CONFIGS / "studies"
 FOLDERS = (STUDIES, settings.CONFIGS)
@@ -168,7 +169,7 @@ def is_study(file: Path) -> bool:
 def _looked_into(file: Path) -> dict[str, Any]:
     try:
         raw = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError, OSError):
+    except (*YAML_FAULTS, OSError):
         return {}
     return raw if isinstance(raw, dict) else {}
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from sgcad_core import registry
+from sgcad_core import entry_points, registry
 
 DISTRIBUTION = Path(__file__).parent / "testkit_dist"
 RAW = {
@@ -28,10 +28,10 @@ def testkit(monkeypatch):
     monkeypatch.syspath_prepend(str(DISTRIBUTION))
     paths = [str(DISTRIBUTION), *filter(None, [os.environ.get("PYTHONPATH")])]
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(paths))
-    registry.catalogue.cache_clear()
+    entry_points.read.cache_clear()
     registry.plugin_class.cache_clear()
     yield sys.modules.get("sgcad_testkit")
-    registry.catalogue.cache_clear()
+    entry_points.read.cache_clear()
     registry.plugin_class.cache_clear()
 
 
@@ -59,3 +59,30 @@ def reports(tmp_path):
         return folder
 
     return write
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory):
+    """One Prefect server with a home of its own; starting one a test would cost 6 s each."""
+    from flows.server import Server
+
+    patch = pytest.MonkeyPatch()
+    patch.setenv("PREFECT_HOME", str(tmp_path_factory.mktemp("prefect")))
+    started = Server()
+    started.wait()
+    yield started
+    started.stop()
+    patch.undo()
+
+
+@pytest.fixture
+def under_server(server):
+    """The server, which PREFECT_API_URL names."""
+    return server
+
+
+@pytest.fixture(autouse=True)
+def _named(request, monkeypatch):
+    """Tests with the server use it; a file may have another server of that name."""
+    if "server" in request.fixturenames and (address := getattr(request.getfixturevalue("server"), "address", "")):
+        monkeypatch.setenv("PREFECT_API_URL", address)

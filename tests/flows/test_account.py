@@ -52,7 +52,9 @@ def has(result):
 def honest(result, field):
     """Whether a thing that is told is there or said to be lacking, and the verdict agrees with the items."""
     account = result["account"]
-    assert account["verdict"] == ("lacking" if account["lacking"] else "whole")
+    beside = [item["kind"] for item in account["items"] if item["kind"] in ("unread", "contradicts", "guessed")]
+    assert (account["verdict"] == "lacking") == bool(account["lacking"])
+    assert account["verdict"] != "whole" or not beside
     assert account["told"] == account["has"] + account["lacking"]
     return field in has(result) or field in lacking(result)
 
@@ -102,9 +104,8 @@ def test_facts_hold_start_road_lane_speed_and_exit_of_every_actor(result):
     fields = {f["field"]: f for f in told["facts"]}
     for at in ("vehicles.V1", "others.P1"):
         assert {f"{at}.{name}" for name in ("start_road", "start_lane", "start_speed_mph", "exit_road")} <= set(fields)
-    assert fields["vehicles.V1.start_speed_mph"]["basis"] == "default"
-    assumed = {i["field"] for i in told["account"]["items"] if i["kind"] == "assumed"}
-    assert "vehicles.V1.start_speed_mph" in assumed
+    speed = fields["vehicles.V1.start_speed_mph"]  # it starts from rest at the sign, as told
+    assert (speed["value"], speed["basis"]) == (0, "text")
 
 
 def test_replaced_words_are_marked_and_report_and_badge_numbers_go(result):

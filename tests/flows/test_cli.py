@@ -12,7 +12,7 @@ import httpx
 import psutil
 import pytest
 
-from flows import cli
+from flows import cli, command_end
 
 CODE = (
     "from flows import cli; from flows.case_files import find_cases; "
@@ -37,7 +37,8 @@ def here(monkeypatch, capsys):
 
     def run(*arguments):
         monkeypatch.setattr(sys, "argv", ["sgcad", *map(str, arguments)])
-        monkeypatch.setattr(cli, "_leave", leave)
+        monkeypatch.setattr(command_end, "leave", leave)
+        monkeypatch.setattr(cli, "leave", leave)
         heeded = signal.getsignal(signal.SIGINT)
         with pytest.raises(SystemExit) as ended:
             cli.main()
@@ -71,7 +72,7 @@ def test_help_takes_less_than_half_a_second_of_work():
     ("changes", "message"),
     [
         ({"decoder": "cad", "backbone": {"name": "openai_chat", "model": "m"}}, "gives none; use decoder 'greedy'"),
-        ({"simulator": {"name": "testkit", "no_such": 1}}, "simulator.no_such: unknown field. Known: fails"),
+        ({"simulator": {"name": "testkit", "no_such": 1}}, "simulator.no_such: unknown field. Known: died, fails"),
         ({"max_attempts": "many"}, "max_attempts: should be a valid integer"),
         ({"max_attempts": 99}, "less than or equal to 10 (found 99)"),
         ({"road_writer": "testkitt"}, "unknown road_writer 'testkitt'. Did you mean 'testkit'?"),
@@ -139,7 +140,7 @@ def test_an_interpreter_that_cannot_be_started_is_named(monkeypatch):
 
     monkeypatch.setattr(sys, "executable", "/no/such/python")
     with pytest.raises(MissingTool, match=r"python cannot be started \(No such file"):
-        Worker("flows.batch.worker:run_in_worker").call("x", timeout_s=1)
+        Worker("plugins.simulator._sumo_worker:replay").call("x", timeout_s=1)
 
 
 def test_doctor_looks_no_further_where_it_cannot_write(tmp_path):
@@ -192,22 +193,21 @@ def test_plugins_of_strangers_are_listed_and_shown():
     assert "no plugin 'testkitt'; installed: backbone/" in missing.stderr
 
 
+def test_a_single_report_needs_no_server_tells_its_steps_and_is_tracked_afterwards(reports, config_file, tmp_path):
+    log, out = tmp_path / "log", tmp_path / "out"
+    config = config_file(tracker={"name": "testkit", "file": str(log)})
+    ended = sgcad("run", reports(a="") / "a", "--config", config, "--out", out, PREFECT_HOME=str(tmp_path / "home"))
+    assert ended.returncode == 0, ended.stderr
+    steps = ["read", "road[1]", "scenario[1]", "simulate", "draw"]
+    assert [line.rpartition(" ")[2] for line in ended.stderr.splitlines()][: len(steps)] == steps
+    assert not (tmp_path / "home").exists()
+    deadline = time.monotonic() + 120
+    while not log.exists() and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert log.read_text() == "kit/a generated\n"
+
+
 # ------------------------------------------------------------------ with a Prefect server for all
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    """One server with a home of its own; starting one a test would cost 6 s each."""
-    from flows.server import Server
-
-    patch = pytest.MonkeyPatch()
-    patch.setenv("PREFECT_HOME", str(tmp_path_factory.mktemp("prefect")))
-    started = Server()
-    started.wait()
-    patch.setenv("PREFECT_API_URL", started.address)
-    yield started
-    started.stop()
-    patch.undo()
-
-
 @pytest.mark.slow
 def test_a_batch_ends_case_by_case_and_running_again_only_does_what_is_left(server, reports, config_file, tmp_path):
     folder = reports(a="", b="REFUSE", c="RAISE")
@@ -217,7 +217,9 @@ def test_a_batch_ends_case_by_case_and_running_again_only_does_what_is_left(serv
     assert ended.returncode == 1, ended.stderr
     expected = {"a": "generated", "b": "refused", "c": "failed"}
     assert statuses(tmp_path / "out") == statuses(tmp_path / "out", "other") == expected
-    assert "kit/c: failed: unexpected ZeroDivisionError" in ended.stdout
+    assert (
+        "kit/c: failed: road_writer 'testkit' (sgcad_testkit:KitRoad): write raised ZeroDivisionError" in ended.stdout
+    )
     assert f"look at: {tmp_path}/out/kit/a/player.html" in ended.stdout
     assert "Traceback" not in ended.stderr
     again = sgcad(*arguments)
@@ -235,17 +237,25 @@ def test_prefect_shows_every_step_of_a_case_what_it_waited_for_and_an_artifact(s
     time.sleep(2)  # a server that stays writes states once a second
     runs = {run["name"]: run["id"] for run in asked(server, "flow_runs/filter")}
     shown, edges, inside = graph_of(server, runs["kit over 2 reports"])
-    assert {("kit/a", "COMPLETED"), ("kit/b", "FAILED"), ("read", "COMPLETED"), ("draw", "COMPLETED")} <= shown
+    assert {("kit/a", "COMPLETED"), ("kit/b", "FAILED"), ("read", "COMPLETED"), ("measure", "COMPLETED")} <= shown
     assert {
+        ("read", "retrieve[road]"),
         ("retrieve[road]", "road[1]"),
         ("road[1]", "scenario[1]"),
+        ("scenario[1]", "simulate"),
         ("simulate", "measure"),
-        ("draw", "track"),
+        ("kit/a", "track kit/a"),
+        ("kit/b", "track kit/b"),
     } <= edges
     assert inside == {"kit/a", "kit/b"}
     states = {(run["name"], run["state_name"]) for run in asked(server, "task_runs/filter")}
     assert {("kit/a", "Lacking"), ("kit/b", "Exhausted"), ("asking/a", "Lacking")} <= states
-    assert {("road[1]", "Accepted"), ("road[1]", "Repair"), ("road[2]", "Accepted"), ("track", "Completed")} <= states
+    assert {
+        ("road[1]", "Accepted"),
+        ("road[1]", "Repair"),
+        ("road[2]", "Accepted"),
+        ("track kit/a", "Completed"),
+    } <= states
     assert ("road[1]", "road[2]") in graph_of(server, runs["asking over a"])[1]
     links = json.loads((tmp_path / "out" / "kit" / "a" / "links.json").read_text())
     assert links["prefect"].endswith(f"/runs/flow-run/{runs['kit over 2 reports']}")
@@ -322,7 +332,10 @@ def gone(processes, seconds=15):
 @pytest.mark.slow
 def test_an_interrupted_batch_ends_with_130_and_keeps_what_is_done(reports, config_file, tmp_path, server):
     folder, config = reports(a="", b="SLOW SLOW", c="SLOW"), config_file()
-    process = started(folder, config, tmp_path / "out")
+    (temporary := tmp_path / "temporary").mkdir()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TMPDIR", str(temporary))
+        process = started(folder, config, tmp_path / "out")
     children = descendants(process)
     os.killpg(process.pid, signal.SIGINT)
     _, errors = process.communicate(timeout=30)
@@ -331,13 +344,54 @@ def test_an_interrupted_batch_ends_with_130_and_keeps_what_is_done(reports, conf
     assert gone(children)
     assert statuses(tmp_path / "out")["a"] == "generated"
     assert "failed" not in statuses(tmp_path / "out").values()
+    assert not [file.name for file in temporary.iterdir() if file.name.startswith("sgcad-")]
+    assert not list((tmp_path / "out" / "kit").glob(".partial-*"))
+
+
+INTERRUPTED = """
+import os, signal, sys, threading, time
+from pathlib import Path
+from flows import cli
+from flows.batch import run_batch
+from flows.case_files.case_folder import CaseFolder
+from sgcad_core.system.temp_folders import temp_folder
+
+
+def hold(out):
+    with temp_folder("test"), CaseFolder(out, "kit", "c").writing():
+        time.sleep(60)
+
+
+def evaluate(made, on_ending, on_step=None):
+    threading.Thread(target=hold, args=(made.out,), daemon=True).start()
+    time.sleep(1)
+    print(len(os.listdir(os.environ["TMPDIR"])), flush=True)
+    os.kill(os.getpid(), signal.SIGINT)
+    time.sleep(9)
+
+
+run_batch.evaluate = evaluate
+cli.main()
+"""
+
+
+def test_an_interrupt_leaves_no_temporary_folder_of_a_thread(reports, config_file, tmp_path):
+    (temporary := tmp_path / "temporary").mkdir()
+    command = ["evaluate", reports(a=""), "--config", config_file(), "--out", tmp_path / "out"]
+    ended = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED, *map(str, command)], capture_output=True, text=True,
+        env=os.environ | {"TMPDIR": str(temporary)},
+    )  # fmt: skip
+    assert (ended.returncode, ended.stdout.strip()) == (130, "1"), ended.stderr
+    assert not list(temporary.iterdir())
+    assert not list((tmp_path / "out" / "kit").glob(".partial-*"))
 
 
 def test_an_interrupt_that_a_library_turns_into_its_own_error_is_still_an_interrupt(reports, config_file, tmp_path):
     """Pydantic does so while it serializes, as Prefect makes it do when it is imported."""
     code = (
         "import os, signal, time; from flows import cli; from flows.batch import run_batch\n"
-        "def evaluate(made, on_ending, on_turn=None):\n"
+        "def evaluate(made, on_ending, on_step=None):\n"
         "    try:\n"
         "        os.kill(os.getpid(), signal.SIGINT); time.sleep(9)\n"
         "    except KeyboardInterrupt as fault:\n"
@@ -402,16 +456,15 @@ def _server_of(process):
 
 
 @pytest.mark.slow
-def test_deployed_flows_do_the_same_from_plain_parameters(server, reports, config_file, tmp_path):
+def test_a_deployed_flow_does_the_same_from_plain_parameters(server, reports, config_file, tmp_path):
     folder, config, out = reports(a="", b="REFUSE"), config_file(), tmp_path / "out"
     code = (
-        "import sys; from flows.deploy.evaluate import evaluate_flow, generate_flow\n"
+        "import sys; from flows.deploy.evaluate import evaluate_flow\n"
         "folder, config, out = sys.argv[1:]\n"
-        "print(generate_flow(folder + '/a', config, out)['status'])\n"
         "print(evaluate_flow([folder], [config], out, jobs=1))\n"
     )
     ended = subprocess.run([sys.executable, "-c", code, folder, config, out], capture_output=True, text=True)
-    assert ended.stdout.splitlines() == ["generated", "{'generated': 1, 'refused': 1}"], ended.stderr
+    assert ended.stdout.splitlines() == ["{'generated': 1, 'refused': 1}"], ended.stderr
 
 
 def test_a_named_server_that_does_not_answer_starts_nothing(reports, config_file, tmp_path):
@@ -424,7 +477,7 @@ def test_a_named_server_that_does_not_answer_starts_nothing(reports, config_file
 
 @pytest.mark.slow
 def test_doctor_tries_a_real_flow_and_a_real_database(server, tmp_path):
-    ended = sgcad("doctor", "--out", tmp_path / "out")
+    ended = sgcad("doctor", "--services", "--out", tmp_path / "out")
     lines = {line.split(":")[0].split()[-1]: line for line in ended.stdout.splitlines()}
     assert lines["flow"].startswith("ok")
     assert lines["tracking"].startswith("ok")

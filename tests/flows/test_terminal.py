@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from flows import cli
+from flows import command_end
 from flows.results.writing import _no_formula
 from flows.terminal import escape
 from sgcad_core.errors import BadInput
@@ -27,8 +27,8 @@ def test_a_fault_that_names_a_strangers_file_reaches_the_terminal_as_text(capsys
     def fails():
         raise BadInput("a\x1b[31mb.txt: cannot be read")
 
-    monkeypatch.setattr(cli, "_leave", lambda code: None)
-    cli.guarded(fails)
+    monkeypatch.setattr(command_end, "leave", lambda code: None)
+    command_end.guarded(fails)
     assert capsys.readouterr().err == "sgcad: error: a\ufffd[31mb.txt: cannot be read\n"
 
 

@@ -1,7 +1,7 @@
 """Hosts as network namespaces: each with its own address, host name, temporary folder and a link that can be cut.
 
     with Network(folder) as net:                      # 10.77.0.1 is the hub, workers are .2, .3, ...
-        process = net.start("a", ["prefect", "worker", ...], environment)
+        process = net.start("a", ["dask", "worker", ...], environment)
         net.cut("a"); net.mend("a"); net.kill(process)
 
 Needs root and iproute2. Everything it made is gone at the end, whatever happened.

@@ -1,9 +1,9 @@
-"""A study on two hosts, one of which loses its network and one its power, ends as on one machine.
+"""A study on two hosts, one of which loses its power and one its network, ends as on one machine.
 
     sudo make test-hosts            # or: python -m tests.hosts.run [--cases 9] [--keep FOLDER]
 
-Real parts throughout: PostgreSQL, Prefect's server, MLflow's server and object storage on a hub, two Prefect
-workers, every one in a network namespace of its own. Leaves with code 0 where it cannot run, saying why.
+Real parts throughout: PostgreSQL, Prefect's server, MLflow's server, object storage and Dask's scheduler on a hub, two
+Dask workers, every one in a network namespace of its own. Leaves with code 0 where it cannot run, saying why.
 """
 
 from __future__ import annotations
@@ -22,9 +22,8 @@ from typing import Any
 import httpx
 
 from tests.hosts import services
-from tests.hosts.coordinate import SHARDS
 from tests.hosts.network import Network, missing
-from tests.hosts.services import API, BUCKET, COMMON, MLFLOW, ROOT, python, until
+from tests.hosts.services import API, BUCKET, COMMON, MLFLOW, ROOT, SCHEDULER, until
 
 STUDY = """title: Two hosts
 arms:
@@ -32,7 +31,8 @@ arms:
   - {name: patient, config: template.yaml, set: ["max_attempts=3"]}
 """
 ADDRESS = f"s3://{BUCKET}/two_hosts"
-CASE_S = 900.0
+ADDRESSES = {"a": "10.77.0.2", "b": "10.77.0.3"}
+CASE_S = 600.0
 """Longest wait for any step; the machine may be busy."""
 
 
@@ -62,29 +62,42 @@ class Trial:
     """The study's way, step by step; every step says what it saw."""
 
     def __init__(self, net: Network, cases: int) -> None:
-        self.net, self.cases = net, max(SHARDS, cases // SHARDS * SHARDS)
-        self.size = 2 * self.cases // SHARDS
+        self.net, self.cases = net, cases
         self.started = time.monotonic()
         self.study = net.folder / "two_hosts.yaml"
         self.reports = net.folder / "cases"
+        self.alone, self.together = net.folder / "alone", net.folder / "together"
 
     def go(self) -> None:
         """Everything, and the comparison at the end."""
         self._write_study()
-        self._alone()
+        subprocess.run(self._command(self.alone, "--set", "tracker=none"), check=True, cwd=ROOT, **self._log("alone"))
+        self.say(f"one machine: {len(contents(self.alone))} results")
         services_up = time.monotonic()
         enter(self.net)
         services.serve(self.net)
-        deploy()
-        self.say(f"PostgreSQL, Prefect, MLflow, storage in {time.monotonic() - services_up:.0f} s")
+        self.say(f"PostgreSQL, Prefect, MLflow, storage, Dask in {time.monotonic() - services_up:.0f} s")
         workers = {host: services.worker(self.net, host) for host in self.net.workers}
-        out = self.net.folder / "together"
-        words = [str(self.study), str(self.reports), str(out), ADDRESS]
-        coordinator = self.net.start("hub", python("tests.hosts.coordinate", *words), COMMON)
+        until("both workers", lambda: len(at_work()) == 2, CASE_S)
+        begun = time.monotonic()
+        tracker = [f"tracker={{name: mlflow, uri: '{MLFLOW}', experiment: study/{self.study.stem}}}"]
+        words = [word for value in tracker for word in ("--set", value)]
+        starter = self.net.start(
+            "hub", self._command(self.together, *words, "--workers", SCHEDULER, "--store", ADDRESS), COMMON
+        )
+        self.say("two workers are there, the study is started")
         self._trouble(workers)
-        until("the study's end", lambda: coordinator.poll() is not None, CASE_S)
-        assert coordinator.returncode == 0, "the coordinator failed; see its log"
-        self._compare(out)
+        until("the study's end", lambda: starter.poll() is not None, CASE_S)
+        assert starter.returncode == 0, "the starter failed; see its log"
+        self.say(f"the study took {time.monotonic() - begun:.0f} s")
+        self._compare()
+
+    def _command(self, out: Path, *words: str) -> list[str]:
+        main = [sys.executable, "-m", "flows.cli", "study", str(self.study), "--cases", str(self.reports)]
+        return [*main, "--out", str(out), *words]
+
+    def _log(self, name: str) -> dict[str, Any]:
+        return {"stdout": (self.net.folder / f"{name}.log").open("wb"), "stderr": subprocess.STDOUT}
 
     def _write_study(self) -> None:
         self.study.write_text(STUDY)
@@ -92,59 +105,41 @@ class Trial:
         for number in range(self.cases):
             shutil.copytree(demo[number % len(demo)], self.reports / f"{number:02d}-{demo[number % len(demo)].name}")
 
-    def _alone(self) -> None:
-        """The same study on one machine, without any of this."""
-        words = [str(self.study), "--cases", str(self.reports), "--out", str(self.net.folder / "alone")]
-        main = [sys.executable, "-c", "from flows.cli import main; main()"]
-        command = [*main, "study", *words, "--set", "tracker=none"]
-        with (self.net.folder / "alone.log").open("wb") as log:
-            subprocess.run(command, check=True, cwd=ROOT, stdout=log, stderr=subprocess.STDOUT)
-        self.say(f"one machine: {len(contents(self.net.folder / 'alone'))} results")
-
     def _trouble(self, workers: dict[str, subprocess.Popen[bytes]]) -> None:
-        """Cut b off in the middle of a shard, kill a in the middle of one, let both come back."""
-        run_b = self._in_the_middle("b")
+        """Cut b off in the middle of a case, kill a in the middle of one, let both come back."""
+        self._in_the_middle("b", 2)
         self.net.cut("b")
-        self.say(f"b is cut off in the middle of flow run {run_b[:8]}, {len(marks())} cases done")
-        run_a = self._in_the_middle("a")
+        self.say(f"b loses its network in the middle of a case, {self._done()} cases done")
+        self._in_the_middle("a", self._done() + 2)
         self.net.kill(workers["a"])
-        self.say(f"a is killed in the middle of flow run {run_a[:8]}, {len(marks())} cases done")
-        until("both runs given up", lambda: states({run_a, run_b}) == {"CRASHED": 2}, CASE_S)
-        self.say("both flow runs were given up and their shards submitted again")
+        self.say(f"a's host is killed (-9) in the middle of a case, {self._done()} cases done")
+        until("both given up", lambda: at_work() == {}, CASE_S)
+        self.say("Dask's scheduler has given both up")
         services.worker(self.net, "a")
-        until("a case of the new worker", lambda: any(m["run"] not in {run_a, run_b} for m in marks().values()), CASE_S)
+        before = self._done()
+        until("a case of the new worker", lambda: self._done() > before, CASE_S)
         self.net.mend("b")
-        self.say(f"a is back and at work, b's cable is in again, {len(marks())} cases done")
+        self.say(f"a is back and at work, b's cable is in again, {self._done()} cases done")
+        until("b at work", lambda: ADDRESSES["b"] in at_work() or self._done() == 2 * self.cases, CASE_S)
+        self.say(f"b is back, {self._done()} cases done")
 
-    def _in_the_middle(self, host: str) -> str:
-        """Wait until a host has done something of a shard and at most half of it; the flow run."""
-        found: list[str] = []
+    def _in_the_middle(self, host: str, done: int) -> None:
+        """Wait until so many cases have come home and a host is at another one."""
+        until(
+            f"{host} in the middle of a case", lambda: self._done() >= done and at_work().get(ADDRESSES[host]), CASE_S
+        )
 
-        def middle() -> bool:
-            held = [lease for lease in read_all(f"{ADDRESS}/leases").values() if lease["host"] == host]
-            done = Counter(mark["run"] for mark in marks().values())
-            found.extend(lease["run"] for lease in held if 0 < done[lease["run"]] <= self.size // 2)
-            return bool(found)
+    def _done(self) -> int:
+        return len(contents(self.together))
 
-        until(f"{host} in the middle of a shard", middle, CASE_S)
-        return found[0]
-
-    def _compare(self, out: Path) -> None:
-        alone, together = contents(self.net.folder / "alone"), contents(out)
+    def _compare(self) -> None:
+        alone, together = contents(self.alone), contents(self.together)
         assert len(alone) == 2 * self.cases
         assert together == alone, "results differ from the single machine's"
-        done = marks()
-        assert len(done) == len(alone)
-        objects = len(storage().find(f"{BUCKET}/two_hosts/results"))
-        hosts = Counter(mark["host"] for mark in done.values())
         logged = mlflow_cases()
         assert logged == dict.fromkeys(alone, 1), f"MLflow has {logged}"
-        until("no flow run still at work", lambda: not (states() & Counter(("RUNNING", "PENDING"))), CASE_S)
-        self.say(
-            f"{len(done)} results equal the single machine's, byte by byte apart from seconds; by host {dict(hosts)}"
-        )
-        self.say(f"{objects - len(done)} of them were done twice, one result of each was kept; MLflow has each once")
-        self.say(f"flow runs: {dict(states())}")
+        self.say(f"{len(together)} results equal the single machine's, byte by byte apart from seconds and steps")
+        self.say(f"MLflow has each once; flow runs: {dict(states())}, cases in Prefect: {dict(case_states())}")
 
     def say(self, line: str) -> None:
         """A line with the time since the start."""
@@ -164,43 +159,26 @@ def enter(net: Network) -> None:
     os.environ.update({k: v for k, v in COMMON.items() if k != "PWD"})
 
 
-def deploy() -> None:
-    """The pool, and the deployments of deploy/prefect.yaml."""
-    for words in (["work-pool", "create", services.POOL, "--type", "process"],
-                  ["deploy", "-n", "shard", "--prefect-file", str(ROOT / "deploy" / "prefect.yaml")]):  # fmt: skip
-        done = subprocess.run(python("prefect", "--no-prompt", *words), cwd=ROOT, capture_output=True, text=True)
-        assert done.returncode == 0, done.stdout + done.stderr
+def at_work() -> dict[str, int]:
+    """How many cases each worker that Dask's scheduler knows is at, by the worker's address."""
+    from distributed import Client
+
+    with Client(SCHEDULER, timeout="30s", set_as_default=False) as client:
+        known = client.scheduler_info(n_workers=-1)["workers"]
+        busy = client.processing()
+    return {address.split("/")[-1].split(":")[0]: len(busy.get(address, ())) for address in known}
 
 
-def storage() -> Any:
-    """The object storage, never from a cache."""
-    import s3fs
-
-    found = s3fs.S3FileSystem(use_listings_cache=False)
-    found.invalidate_cache()
-    return found
+def states() -> Counter[str]:
+    """States of flow runs, as the server has them."""
+    return Counter(run["state_type"] for run in ask(f"{API}/flow_runs/filter", {"limit": 200}))
 
 
-def read_all(prefix: str) -> dict[str, Any]:
-    """Every JSON object below a prefix."""
-    fs, found = storage(), {}
-    for name in fs.find(prefix):
-        try:
-            found[name] = json.loads(fs.cat_file(name))
-        except (ValueError, FileNotFoundError):
-            continue
-    return found
-
-
-def marks() -> dict[str, Any]:
-    """All marks of finished cases."""
-    return read_all(f"{ADDRESS}/done")
-
-
-def states(runs: set[str] | None = None) -> Counter[str]:
-    """States of flow runs, of all or some, as the server has them."""
-    found = ask(f"{API}/flow_runs/filter", {"limit": 200})
-    return Counter(run["state_type"] for run in found if runs is None or run["id"] in runs)
+def case_states() -> Counter[str]:
+    """States of the cases' task runs."""
+    body = {"limit": 200, "task_runs": {"name": {"like_": "/"}}}
+    found = ask(f"{API}/task_runs/filter", body)
+    return Counter(run["state_name"] for run in found if not run["name"].startswith("track "))
 
 
 def mlflow_cases() -> Counter[tuple[str, str]]:
@@ -222,10 +200,10 @@ def ask(address: str, body: dict[str, Any]) -> Any:
 
 
 def contents(out: Path) -> dict[tuple[str, str], Any]:
-    """result.json and metrics.json of every case; without seconds, and without which arm shared whose stage."""
+    """result.json and metrics.json of every case; without seconds, and without which arm shared whose step."""
     found = {}
     for file in sorted(out.glob("studies/*/*/*/result.json")):
-        result = {k: v for k, v in json.loads(file.read_text()).items() if k not in ("seconds", "shared")}
+        result = {k: v for k, v in json.loads(file.read_text()).items() if k not in ("seconds", "shared", "steps")}
         metrics = file.with_name("metrics.json")
         bytes_of = json.dumps(result).encode(), metrics.read_bytes() if metrics.exists() else b""
         found[file.parent.parent.name, file.parent.name] = bytes_of

@@ -1,4 +1,4 @@
-"""What the hub serves: PostgreSQL, Prefect's server and MLflow's on it, object storage; and the workers' command."""
+"""What the hub serves: PostgreSQL, Prefect's server and MLflow's on it, object storage, Dask's scheduler; a worker."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ API = f"http://{HUB}:4200/api"
 MLFLOW = f"http://{HUB}:5000"
 STORAGE = f"http://{HUB}:9000"
 BUCKET = "studies"
-POOL = "sgcad"
+SCHEDULER = f"tcp://{HUB}:8786"
 START_S = 300.0
 
 COMMON = {
@@ -32,6 +32,7 @@ COMMON = {
     "AWS_SECRET_ACCESS_KEY": "none",
     "AWS_DEFAULT_REGION": "us-east-1",
     "AWS_ENDPOINT_URL": STORAGE,
+    "DASK_DISTRIBUTED__COMM__TIMEOUTS__TCP": "15s",  # 30 by default: a host without network is given up
     "FSSPEC_S3": '{"config_kwargs": {"connect_timeout": 5, "read_timeout": 10, "retries": {"max_attempts": 2}}}',
 }
 
@@ -76,18 +77,16 @@ def serve(net: Network) -> None:
         COMMON | {"MLFLOW_S3_ENDPOINT_URL": STORAGE, "MLFLOW_SERVER_ENABLE_JOB_EXECUTION": "false"},
     )  # fmt: skip
     net.start("hub", python("moto.server", "--host", HUB, "--port", "9000"), COMMON)
+    net.start("hub", python("distributed.cli.dask_scheduler", "--host", HUB, "--no-dashboard"), COMMON)
     for address in (f"{STORAGE}/", f"{API}/health", f"{MLFLOW}/health"):
         until(address, lambda address=address: answers(address))
     httpx.put(f"{STORAGE}/{BUCKET}", timeout=30).raise_for_status()
 
 
 def worker(net: Network, host: str) -> subprocess.Popen[bytes]:
-    """A host's Prefect worker: one shard at a time."""
-    command = python(
-        "prefect", "worker", "start", "--pool", POOL, "--type", "process", "--limit", "1", "--name", host,
-        "--install-policy", "never",
-    )  # fmt: skip
-    return net.start(host, command, COMMON | {"PREFECT_WORKER_QUERY_SECONDS": "2"})
+    """A host's Dask worker, one case at a time, which its system starts again whenever it ends."""
+    words = python("distributed.cli.dask_worker", SCHEDULER, "--name", host, "--nthreads", "1", "--no-dashboard")
+    return net.start(host, ["sh", "-c", 'while :; do "$@"; sleep 1; done', "sh", *words], COMMON)
 
 
 def answers(address: str) -> bool:

@@ -13,20 +13,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from flows.desk.views.attempts import Attempt, attempts_of
 from flows.desk.views.field_words import name_of, shown
+from flows.desk.views.folder_files import FILES, diagrams_of, is_there, odd_files, text_of
 from flows.desk.views.list_rows import account_counts, contact_of, disagreements, doubts_of, notes_of
 
-FILES: Mapping[str, str] = {
-    "scenario.xosc": "OpenSCENARIO", "scenario.rou.xml": "SUMO routes", "road.xodr": "OpenDRIVE",
-    "road.net.xml": "SUMO network", "trajectories.csv": "trajectories", "metrics.json": "metrics",
-    "result.json": "result", "report.txt": "report", "facts.yaml": "edits",
-}  # fmt: skip
-"""Files of a case's folder that can be downloaded."""
-ATTEMPT = re.compile(r"(road|scenario)-\d{2,4}")
-ATTEMPT_FILES = ("prompt.txt", "answer.txt", "findings.json")
 _DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
-_LARGEST = 4 * 2**20
-"""Characters of a text file that are read."""
 
 
 @dataclass(frozen=True)
@@ -79,16 +71,6 @@ class AccountLine:
 
 
 @dataclass(frozen=True)
-class Attempt:
-    """One attempt of a writer: its folder's name, what was found, which files there are to read."""
-
-    name: str
-    findings: tuple[str, ...]
-    files: tuple[str, ...]
-    seconds: float | None = None
-
-
-@dataclass(frozen=True)
 class CasePage:
     """Everything on the page but map and mending."""
 
@@ -104,6 +86,8 @@ class CasePage:
     verdict: str
     accounted: bool
     """Whether the result has an account; results of older versions have none."""
+    odd: tuple[str, ...]
+    """What lies in the folder and is not shown, with the reason."""
     result: Mapping[str, Any] = field(repr=False)
 
 
@@ -111,22 +95,24 @@ def page_of(folder: Path, result: Mapping[str, Any]) -> CasePage:
     """Read a case's folder. What is missing in it is left out."""
     facts = list(result.get("facts") or ())
     spans = spans_of(folder, result)
-    narrative = _text(folder / "report.txt")
+    narrative = text_of(folder, "report.txt")
     pieces, numbers = pieces_of(narrative, spans, facts)
     return CasePage(
         pieces=pieces, groups=tuple(groups_of(facts, numbers, doubts_of(result))), counts=account_counts(result),
         account=account_of(result, numbers), notes=tuple(_note(note, numbers) for note in notes_of(result)),
         attempts=tuple(attempts_of(folder)), diagrams=len(diagrams_of(folder)),
-        files=tuple((name, about) for name, about in FILES.items() if (folder / name).is_file()),
-        player=(folder / "player.html").is_file(), verdict=verdict_of(result),
-        accounted=bool(result.get("account")), result=result,
+        files=tuple((name, about) for name, about in FILES.items() if is_there(folder, name)),
+        player=is_there(folder, "player.html"), verdict=verdict_of(result),
+        accounted=bool(result.get("account")), odd=tuple(odd_files(folder)), result=result,
     )  # fmt: skip
 
 
 def verdict_of(result: Mapping[str, Any]) -> str:
-    """The result in a line: the reason, or the contact and whether it is the declared one."""
+    """The result in a line: the reason, the verdict of its account, or of an older result the contact."""
     if result["status"] != "generated":
         return str(result.get("reason") or result["status"])
+    if said := (result.get("account") or {}).get("sentence"):
+        return f"{said[0].upper()}{said[1:]}"
     collision, near = result.get("collision") or {}, result.get("near_crash")
     if near:
         return f"near crash, {'as declared' if near['realised'] else 'not as declared'}"
@@ -143,11 +129,11 @@ def spans_of(folder: Path, result: Mapping[str, Any]) -> dict[int, tuple[int, in
     The player knows it where parts of the report were taken out; else both are the same.
     """
     spans = {int(s["start"]): (int(s["start"]), int(s["end"])) for s in result.get("sentences") or ()}
-    found = _DATA.search(_text(folder / "player.html"))
+    found = _DATA.search(text_of(folder, "player.html"))
     try:
         told = json.loads(found[1])["sentences"] if found else ()
         return spans | {int(s["of"]): (int(s["start"]), int(s["end"])) for s in told}
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
         return spans
 
 
@@ -223,10 +209,11 @@ def _fact(
     )  # fmt: skip
 
 
-# ------------------------------------------------------------------ account, notes, attempts
+# ------------------------------------------------------------------ account, notes
 def account_of(result: Mapping[str, Any], numbers: Mapping[int, int]) -> dict[str, list[AccountLine]]:
     """lacks, assumed, has: the account's items; of results without one, defaults are what is assumed."""
-    found: dict[str, list[AccountLine]] = {"lacks": [], "assumed": [], "has": []}
+    kinds = "lacks", "unread", "contradicts", "guessed", "assumed", "has"
+    found: dict[str, list[AccountLine]] = {kind: [] for kind in kinds}
     items = (result.get("account") or {}).get("items")
     for item in items if items is not None else _items_of_facts(result.get("facts") or ()):
         found.setdefault(item["kind"], []).append(_line(item, numbers))
@@ -252,43 +239,3 @@ def _note(note: Mapping[str, Any], numbers: Mapping[int, int]) -> AccountLine:
     thing = thing_of(str(note.get("field") or "")) or str(note.get("subject") or "")
     return AccountLine(str(note["text"]), str(note["kind"]), thing, str(note.get("field") or ""),
                        numbers.get(note.get("start"), -1))  # type: ignore[arg-type]  # fmt: skip
-
-
-def attempts_of(folder: Path) -> Iterator[Attempt]:
-    """The writers' attempts in their order."""
-    stages = {"road": 0, "scenario": 1}
-    places = [p for p in (folder / "attempts").glob("*-*") if ATTEMPT.fullmatch(p.name)]
-    for place in sorted(places, key=lambda p: (stages[p.name.partition("-")[0]], p.name)):
-        found, about = _json(place / "findings.json"), _json(place / "attempt.json")
-        lines = (_finding(f) for f in found if isinstance(f, dict)) if isinstance(found, list) else ()
-        files = (name for name in ATTEMPT_FILES if (place / name).is_file() and (place / name).stat().st_size > 2)
-        seconds = about.get("seconds") if isinstance(about, dict) else None
-        yield Attempt(place.name, tuple(lines), tuple(files), seconds)
-
-
-def _finding(found: Mapping[str, Any]) -> str:
-    parts = [str(found.get(name) or "") for name in ("what", "where", "value", "remedy")]
-    what, where, value, remedy = parts
-    return f"{what}{f' at {where}' if where else ''}{f': {value}' if value else ''}{f' – {remedy}' if remedy else ''}"
-
-
-def diagrams_of(folder: Path) -> list[Path]:
-    """The report's drawings, in their order."""
-    first = folder / "diagram.png"
-    rest = sorted(folder.glob("diagram-*.png"), key=lambda file: (len(file.name), file.name))
-    return [file for file in (first, *rest) if file.is_file()]
-
-
-def _text(file: Path) -> str:
-    try:
-        with file.open(encoding="utf-8", errors="replace", newline="") as content:
-            return content.read(_LARGEST)
-    except OSError:
-        return ""
-
-
-def _json(file: Path) -> Any:
-    try:
-        return json.loads(_text(file))
-    except ValueError:
-        return {}

@@ -54,7 +54,8 @@ class Row:
 def row_of(key: str, result: Mapping[str, Any]) -> Row:
     """The row of a result. Raises TypeError, ValueError, KeyError, AttributeError for what is no result."""
     facts, account = list(result.get("facts") or ()), account_counts(result)
-    disagreeing, doubts = len(disagreements(facts)), len(doubts_of(result))
+    disagreeing = len({*disagreements(facts), *(one["field"] for one in result.get("disagreements") or ())})
+    doubts = len(doubts_of(result))
     status = str(result["status"])
     return Row(
         key=key, config=key.rpartition("/")[0] or str(result.get("config") or ""),
@@ -81,7 +82,8 @@ def _trust(result: Mapping[str, Any], lacking: int, doubts: int) -> Trust:
         return "broken"
     if lacking or as_declared(result) is False:
         return "lacking"
-    return "whole" if result.get("account") and not doubts else "doubtful"
+    whole = (result.get("account") or {}).get("verdict") == "whole"
+    return "whole" if whole and not doubts else "doubtful"
 
 
 # ------------------------------------------------------------------ parts of a result

@@ -13,11 +13,12 @@ from typing import Any
 
 import numpy as np
 
+from flows.desk.views.folder_files import LARGEST_TEXT, content_of, is_there
 from flows.player.player_highlights import road_along, road_axes
 from flows.player.road_shapes import drawing_of
 from flows.results.reading import FinishedCase
 from flows.results.report.scene import Scene, scene_of
-from sgcad_core.errors import InvalidOutput
+from sgcad_core.errors import BadInput, InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.roads.lane_graph import Edge, Floats, Lane, LaneGraph, road_of
 
@@ -81,11 +82,12 @@ class RoadMap:
 def map_of(folder: Path, result: Mapping[str, Any]) -> RoadMap | None:
     """The map of a case; None where there is no network, or none that can be read."""
     try:
-        net_xml = (folder / "road.net.xml").read_text(encoding="utf-8")
+        net_xml = content_of(folder, "road.net.xml", LARGEST_TEXT).decode("utf-8")
         graph, drawing = parse_net(net_xml), drawing_of(net_xml)
-    except (OSError, ValueError, InvalidOutput):
+    except (ValueError, BadInput, InvalidOutput):
         return None
-    scene = scene_of(FinishedCase(folder.parent.name, folder.name, folder, result, {}))
+    moved = is_there(folder, "trajectories.csv")
+    scene = scene_of(FinishedCase(folder.parent.name, folder.name, folder, result, {})) if moved else None
     axes = road_axes(result.get("facts") or ())
     count = sum(len(edge.lanes) for edge in graph.edges.values())  # a drawing has the lanes first, then the ways across
     own = [(edge, lane) for edge in graph.edges.values() for lane in edge.lanes]

@@ -14,7 +14,7 @@ from typing import Any
 from urllib.parse import quote
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
+from PIL import UnidentifiedImageError
 
 from flows.case.case_in_words import lacking_in_words
 from flows.player.player_data import COLORS
@@ -24,6 +24,7 @@ from sgcad_core.case.records import Floats
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.xml import Element, parse_xml
 from sgcad_core.result import as_declared, counts_of
+from sgcad_core.system.pictures import opened
 
 THUMB_PX = 240
 EVERY_S = 0.5
@@ -75,7 +76,7 @@ def _thumb(diagram: Path) -> str | None:
     """The diagram as a small data URL; None where it is no picture."""
     out = io.BytesIO()
     try:
-        with Image.open(diagram) as image:
+        with opened(diagram) as image:
             image.thumbnail((THUMB_PX, THUMB_PX))
             image.convert("RGB").save(out, format="WEBP", quality=55)
     except (OSError, UnidentifiedImageError):
@@ -109,7 +110,8 @@ def _account(result: Mapping[str, Any]) -> dict[str, Any] | None:
     if account is None:
         return None
     lacks = [line for line in (lacking_in_words(account, LACKING_SHOWN),) if line]
-    return {key: account[key] for key in ("verdict", "told", "has", "lacking", "assumed")} | {"lacks": lacks}
+    kept = {key: account[key] for key in ("verdict", "told", "has", "lacking", "assumed")}
+    return kept | {"lacks": lacks, "sentence": account.get("sentence", "")}
 
 
 # ------------------------------------------------------------------ what to draw

@@ -132,9 +132,9 @@ function tile(run, arm) {
 // What the report tells and the scenario has and lacks: words and a mark, not color alone.
 function account(a) {
   const whole = a.verdict === "whole";
-  const text = whole ? `✓ all ${a.told} told are there` : `⚠ ${a.lacking} of ${a.told} told lacking`;
+  const text = whole ? `✓ all ${a.told} told are there` : a.lacking ? `⚠ ${a.lacking} of ${a.told} told lacking` : `⚠ ${a.verdict}`;
   const box = element("p", "account " + (whole ? "good" : "amber"), `${text} · ${a.assumed} assumed`);
-  if (a.lacks.length) box.title = a.lacks[0];
+  if (a.sentence) box.title = a.sentence;
   return box;
 }
 

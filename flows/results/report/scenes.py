@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from PIL import Image
 
 from flows.player.overview_png import GROUND, RED
 from flows.results.reading import FinishedCase, Study, made_of
@@ -18,6 +17,7 @@ from flows.results.table import Tables
 from sgcad_core.metrics.labels.label_match import compare, truth_figures
 from sgcad_core.reading.text.normalise import sentences
 from sgcad_core.result import as_declared
+from sgcad_core.system.pictures import opened
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -83,7 +83,7 @@ def _diagram(axes: Axes, study: Study, case: str) -> None:
     if file is None:
         say(axes, "no diagram")
     else:
-        with Image.open(file) as image:
+        with opened(file) as image:
             image.thumbnail((480, 480))
             axes.imshow(np.asarray(image.convert("RGB")))
     under(axes, case)

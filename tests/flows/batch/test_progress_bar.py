@@ -29,7 +29,7 @@ def test_the_bar_moves_with_every_attempt_of_a_model():
     watch = BatchProgress(tally(2), 2, bar, bar.add_task("starting", total=2, done=0))
     seen = []
     for attempt in ("road[1]", "road[2]", "road[3]", "scenario[1]", "scenario[2]"):
-        watch.turn(job("a"), attempt)
+        watch.step("kit/a", attempt)
         seen.append(bar.tasks[0].completed)
     watch.ended(job("a"), ending())
     seen.append(bar.tasks[0].completed)
@@ -39,10 +39,20 @@ def test_the_bar_moves_with_every_attempt_of_a_model():
 
 def test_without_a_terminal_every_case_of_a_small_batch_has_a_line(capsys):
     with progress_bar.batch_progress(tally(2)) as watch:
-        watch.turn(job("a"), "road[1]")
+        watch.step("kit/a", "road[1]")
         watch.ended(job("a"), ending())
         watch.ended(job("b"), ending("refused"))
     assert capsys.readouterr().err.splitlines() == ["[1/2] kit/a: generated (0.2 s)", "[2/2] kit/b: refused (0.2 s)"]
+
+
+def test_without_a_terminal_the_steps_of_a_single_case_have_lines(capsys):
+    with progress_bar.batch_progress(tally(1)) as watch:
+        for step in ("read", "retrieve[road]", "road[1]", "simulate", "measure"):
+            watch.step("kit/a", step)
+        watch.ended(job("a"), ending())
+    told = ["read", "road[1]", "simulate"]
+    lines = [*(f"[0/1] kit/a: {step}" for step in told), "[1/1] kit/a: generated (0.2 s)"]
+    assert capsys.readouterr().err.splitlines() == lines
 
 
 @pytest.mark.parametrize("count", [51, 400])

@@ -4,13 +4,8 @@ import tracemalloc
 from pathlib import Path
 from types import SimpleNamespace
 
-import pytest
-
 from flows.batch import summary
-from flows.batch.prefect_case_task import TaskBoard
-from flows.batch.prefect_tasks import StepRuns
 from flows.case.run_case import Ending
-from flows.case.step_log import Step
 
 CASES = 24
 
@@ -38,7 +33,9 @@ def result(number):
 
 def tally():
     cases = tuple(SimpleNamespace(id=str(number)) for number in range(CASES))
-    return summary.Tally(SimpleNamespace(configs=(SimpleNamespace(name="kit"),), cases=cases, out=Path("o")))
+    return summary.Tally(
+        SimpleNamespace(configs=(SimpleNamespace(name="kit"),), cases=cases, out=Path("o"), left=("cases/notes.docx",))
+    )
 
 
 def told(capsys):
@@ -47,6 +44,11 @@ def told(capsys):
         made.add(job(str(number)), Ending(result(number), reused=number == 1))
     summary.show(made)
     return capsys.readouterr().out, made.exit_code(), made.in_words()
+
+
+def test_what_is_no_case_is_named(capsys):
+    shown, _, _ = told(capsys)
+    assert "left out, 1 beside the cases: cases/notes.docx; a case is a folder or .pdf, .txt, .xml" in shown
 
 
 def test_a_long_batch_is_told_as_if_all_was_kept(capsys, monkeypatch):
@@ -62,18 +64,7 @@ def test_a_long_batch_keeps_little_of_a_result():
     made = tally()
     tracemalloc.start()
     for number in range(CASES):
-        made.add(job(str(number)), Ending(result(number), attempts=("x" * 50_000 + str(number),)))
+        made.add(job(str(number)), Ending(result(number) | {"sentences": "x" * 50_000 + str(number)}))
     kept = tracemalloc.get_traced_memory()[0]
     tracemalloc.stop()
     assert kept / CASES < 5_000
-
-
-@pytest.mark.parametrize(("reused", "steps"), [(False, 3), (True, 0)])
-def test_an_ending_is_taken_once_and_its_steps_are_counted(reused, steps):
-    board = TaskBoard({}, runner=None)
-    board.endings["kit/a"] = Ending({}, reused=reused, steps=(Step("read", 0.0, 1.0), Step("road", 1.0, 2.0)))
-    board.step_runs["kit/a"] = StepRuns("flow", "task", every=True)
-    ending, _ = board.take("kit/a")
-    assert (ending.reused, board.steps) == (reused, steps)
-    assert not board.endings
-    assert not board.step_runs

@@ -14,7 +14,7 @@ from sgcad_core import settings
 from sgcad_core.config import load
 from sgcad_core.errors import ConfigError, MissingTool
 
-ALWAYS = {"report.txt", "attempts", "result.json", "specs.json", ".digest", ".source"}
+ALWAYS = {"report.txt", "attempts", "result.json", "specs.json", "steps.json", ".digest", ".source"}
 EXECUTED = ALWAYS | {
     "road.net.xml", "road.xodr", "scenario.xosc", "trajectories.csv", "metrics.json", "player.html", "picture.png",
 }  # fmt: skip
@@ -73,7 +73,7 @@ def test_a_finding_that_nobody_can_repair_exhausts_the_case(run):
 def test_a_bug_in_a_plugin_costs_one_case_and_leaves_its_trace(run):
     ending, folder = run("RAISE")
     assert ending.result["status"] == "failed"
-    assert ending.result["reason"] == "unexpected ZeroDivisionError: a bug in a plugin (see error.txt)"
+    assert "road_writer 'testkit' (sgcad_testkit:KitRoad): write raised ZeroDivisionError" in ending.result["reason"]
     assert "sgcad_testkit.py" in (folder / "error.txt").read_text()
     assert names(folder) == ALWAYS | {"error.txt"}
 
@@ -127,13 +127,13 @@ def test_what_cannot_be_drawn_costs_one_case(run, monkeypatch):
     assert names(folder) == ALWAYS | {"error.txt"}
 
 
-def test_a_model_is_asked_again_with_its_findings_and_every_call_is_kept(run):
+def test_a_model_is_asked_again_with_its_findings_and_every_answer_is_kept(run):
     script = {"name": "scripted", "answers": ["no", "never", "ok"]}
     ending, folder = run(**MODEL, backbone=script)
     assert ending.result["status"] == "generated"
     assert ending.result["attempts"] == {"road": 3, "scenario": 1}
-    assert [c.generation.text for c in ending.calls] == ["no", "never", "ok"]
-    assert {(c.query.case, c.query.stage) for c in ending.calls} == {("c1", "road")}
+    answers = [(folder / "attempts" / f"road-0{n}" / "answer.txt").read_text() for n in (1, 2, 3)]
+    assert answers == ["no", "never", "ok"]
     second = folder / "attempts" / "road-02"
     assert "the answer is not ok (found no)" in (second / "prompt.txt").read_text()
     assert (second / "answer.txt").read_text() == "never"
@@ -203,7 +203,7 @@ def test_a_second_opinion_that_leads_to_no_scenario_leaves_the_rules_reading(mon
     backs = Opinion(heard={"other": Heard(value="backing", p=0.9)}, weights={"other": Weights()})
     monkeypatch.setattr("sgcad_core.reading.second_reader.learned_reader.opinion", lambda narrative: backs)
     real = CaseRun._both
-    monkeypatch.setattr(CaseRun, "_both", lambda self, report: None if report.opinion else real(self, report))
+    monkeypatch.setattr(CaseRun, "_both", lambda self, report: None if report.value.opinion else real(self, report))
     source = tmp_path / "c1.txt"
     source.write_text(
         "The AV was stopped at a red light on Main Street. An SUV behind it, traveling straight, struck the rear "
@@ -232,7 +232,7 @@ def test_a_models_answers_to_the_whole_report_join_the_reading(monkeypatch, tmp_
     weights = {kind: Weights(differ=9.0) for kind in KINDS}
     said = Opinion(answered=Answered(layout=RoadLayout(legs=legs), behavior=behavior), weights=weights)
     monkeypatch.setattr(
-        "flows.case.chain.with_model_opinion", lambda report, ask: report.model_copy(update={"opinion": said})
+        "flows.case.steps.with_model_opinion", lambda report, ask: report.model_copy(update={"opinion": said})
     )
     source = tmp_path / "c1.txt"
     source.write_text("V1 was northbound and V2 was southbound. The front of V1 struck the front of V2.")

@@ -1,6 +1,7 @@
 """Facts by people on real cases: kept, laid over, undone, refused; the real template chain, two writers at once."""
 
 import json
+import os
 import shutil
 import threading
 from pathlib import Path
@@ -14,7 +15,7 @@ from flows.case_files import find_cases
 from flows.case_files.find_cases import Case
 from flows.desk import export_edits
 from sgcad_core.config import load
-from sgcad_core.errors import BadInput, WrongEdit
+from sgcad_core.errors import BadInput, ConfigError, WrongEdit
 from sgcad_core.revision import read_edits
 
 TEXT = (
@@ -42,9 +43,7 @@ def made_once(tmp_path_factory, config):
 def case(tmp_path, made_once):
     """A finished case's folder of this test alone; its report lies in tmp_path/cases/c1."""
     shutil.copytree(made_once, tmp_path, dirs_exist_ok=True)
-    folder = tmp_path / "runs" / "template" / "c1"
-    (folder / ".source").write_text(str(tmp_path / "cases" / "c1"))
-    return folder
+    return tmp_path / "runs" / "template" / "c1"
 
 
 def finished(place, config, name):
@@ -55,6 +54,38 @@ def finished(place, config, name):
     made = Case(source, name)
     run_case(config, made, place / "runs", find_cases.digest_of(made, config))
     return place / "runs" / config.name / name
+
+
+def test_a_case_names_its_report_without_telling_where_it_lies_on_this_machine(case, tmp_path):
+    assert (case / ".source").read_text() == "../../../cases/c1"
+    assert person_facts.report_path(case) == tmp_path / "cases" / "c1"
+    (case / ".source").write_text(str(tmp_path / "cases" / "c1"))  # as older versions have it
+    assert person_facts.report_path(case) == tmp_path / "cases" / "c1"
+
+
+@pytest.mark.parametrize("kind", ["pipe", "folder", "long", "gone"])
+def test_an_odd_note_of_the_report_is_told(case, kind):
+    (case / ".source").unlink()
+    if kind == "pipe":
+        os.mkfifo(case / ".source")
+    elif kind == "folder":
+        (case / ".source").mkdir()
+    elif kind == "long":
+        (case / ".source").write_text("x" * 200_000)
+    with pytest.raises(BadInput, match="does not say where its report is"):
+        revise_case.opened(case)
+
+
+@pytest.mark.parametrize(
+    "text", ["a: 2026-99-99", "!!int ''", "!!timestamp x", "[" * 20_000, "!!bool x", "\x00", "? [a]"]
+)
+def test_odd_yaml_is_told_as_such(case, text):
+    (case.parent / "config.yaml").write_text(text)
+    with pytest.raises(ConfigError, match=r"no YAML|no config"):
+        revise_case.opened(case)
+    (case.parents[2] / "cases" / "c1" / "facts.yaml").write_text(text)
+    with pytest.raises(BadInput, match=r"no YAML|expected a mapping"):
+        read_edits(case.parents[2] / "cases" / "c1" / "facts.yaml")
 
 
 def left(folder):
@@ -115,7 +146,7 @@ def test_as_read_takes_one_fact_back_and_keeps_the_others(case):
         ({"vehicles.V1.maneuver": "turn_rigth"}, "did you mean 'turn_right'"),
         ({"vehicles.V7.kind": "bus"}, "there is no V7; there are V1, V2"),
         ({"roads.Q.lanes_forward": 2}, "there is no road Q"),
-        ({"vehicles.V1.start_lane": 5}, "has 1 lane"),
+        ({"vehicles.V1.start_lane": 12}, "integer from 1 to 8"),
         ({"contacts.0.striker": "V1", "contacts.0.struck": "V1"}, "cannot strike itself"),
         ({"vehicles.V2.present": False}, "before it was generated as declared"),
         ({}, "no fact is given"),

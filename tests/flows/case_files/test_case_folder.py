@@ -46,6 +46,16 @@ def test_a_written_folder_is_finished_with_its_digest_alone(tmp_path):
     assert [p.name for p in case.path.parent.iterdir()] == ["c"]
 
 
+def test_results_are_for_their_user_alone_until_that_user_shares_them(tmp_path):
+    case_folder.check_writable(tmp_path / "runs")
+    case = CaseFolder(tmp_path / "runs", "k", "c")
+    with case.writing() as partial:
+        fill(partial)
+    modes = {f.name: f.stat().st_mode & 0o777 for f in (case.out, case.path)}
+    assert modes["runs"] == 0o700
+    assert modes["c"] & 0o007 == 0
+
+
 def test_a_write_that_fails_leaves_the_old_folder(tmp_path):
     case = CaseFolder(tmp_path, "k", "c")
     with case.writing() as partial:
@@ -101,6 +111,18 @@ def test_the_unfinished_folder_of_a_living_process_is_left_alone(tmp_path):
         assert case_folder.clear_partial(tmp_path / "k") == 0
         assert partial.is_dir()
         fill(partial)
+
+
+def test_the_unfinished_folder_of_a_killed_process_goes_before_its_parent_asks_for_its_end(tmp_path):
+    killed = subprocess.Popen([sys.executable, "-c", "import time; print(flush=True); time.sleep(600)"], stdout=-1)
+    killed.stdout.readline()
+    folder = tmp_path / "k" / f"{case_folder.PARTIAL}{killed.pid}-x"
+    folder.mkdir(parents=True)
+    assert case_folder.clear_partial(tmp_path / "k") == 0
+    killed.kill()
+    os.waitid(os.P_PID, killed.pid, os.WEXITED | os.WNOWAIT)
+    assert case_folder.clear_partial(tmp_path / "k") == 1
+    killed.communicate()
 
 
 def test_an_output_folder_that_is_a_file_is_refused(tmp_path):

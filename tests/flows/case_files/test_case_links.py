@@ -126,7 +126,8 @@ def test_a_key_is_one_that_prefect_takes(name, key):
 
 def test_a_case_that_is_logged_by_a_later_batch_links_to_its_run(folder, monkeypatch):
     """Its own batch ended before; a case that nobody logs now keeps what it has."""
-    from flows.batch import prefect_case_end, track_cases
+    from flows.batch import prefect_case_end
+    from flows.batch.tracking import track_cases
 
     monkeypatch.setattr(track_cases, "track_safely", lambda job, ending: "")
     pages = {"c1": MLFLOW}
@@ -136,5 +137,15 @@ def test_a_case_that_is_logged_by_a_later_batch_links_to_its_run(folder, monkeyp
         case=SimpleNamespace(id="c1"),
     )  # fmt: skip
     for _ in range(2):
-        assert prefect_case_end.CaseReporter(False, None).case(job, SimpleNamespace(reused=True), None) == ""
+        assert prefect_case_end.CaseReporter(False, None).former(job, SimpleNamespace(reused=True)) == ""
         assert case_links.kept(folder) == {"mlflow": MLFLOW}
+
+
+def test_a_full_disk_leaves_no_piece_of_the_links(tmp_path, monkeypatch):
+    def full(self, text, **_):
+        self.touch()
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(type(tmp_path), "write_text", full)
+    case_links.keep(tmp_path, {"mlflow": "/#/experiments/1/runs/1"})
+    assert list(tmp_path.iterdir()) == []

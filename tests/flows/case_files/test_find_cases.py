@@ -53,13 +53,6 @@ def test_long_names_that_differ_at_their_end_stay_apart():
     assert safe_id("x" * 300 + "1") != safe_id("x" * 300 + "2")
 
 
-def test_a_folder_of_case_folders_is_read_in_order_and_loose_files_are_no_cases(tmp_path):
-    for name in ("b", "a", ".hidden"):
-        (tmp_path / name).mkdir()
-    (tmp_path / "README.txt").write_text("about these cases")
-    assert [c.id for c in cases_in([tmp_path])] == ["a", "b"]
-
-
 def test_a_folder_of_loose_reports_is_a_folder_of_cases(tmp_path):
     for name in ("one.txt", "two.xml", "three.pdf", "notes.docx"):
         (tmp_path / name).write_text("x")

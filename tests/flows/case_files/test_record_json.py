@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flows.case_files.record_json import Unpackable, pack, unpack
-from flows.case_files.stage_cache import content_of
+from flows.case_files.step_keys import content_of
 from sgcad_core.asking.refine import Call, Turn
 from sgcad_core.case.records import (
     Attempt,

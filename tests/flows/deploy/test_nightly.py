@@ -4,11 +4,11 @@ import json
 
 import pytest
 
-from flows.batch.plan_batch import JobRunner, batch_of
+from flows.batch import run_batch
+from flows.batch.plan_batch import batch_of
 from flows.case_files.find_cases import cases_in
 from flows.deploy import nightly
-from flows.deploy.nightly import Tolerance, accept_latest, drops, figures_of
-from sgcad_core.asking.refine import run_at_once
+from flows.deploy.nightly import Tolerance, drops, figures_of
 from sgcad_core.errors import ConfigError
 
 WAS = {"mini": {"generated": 0.9, "file_errors": 0.1, "attempts": 2.0, "seconds": 1.0, "refused": 0.1}}
@@ -53,11 +53,7 @@ def measured(reports, config_file, tmp_path):
     """A finished batch; what the flow does around it is under test."""
     folder = reports(a="", b="REFUSE", c="RAISE")
     batch = batch_of(cases_in([folder]), [config_file()], tmp_path / "out", jobs=1)
-    plan, runner = batch.plan(), JobRunner(batch)
-    runner.begin(plan)
-    for job in plan:
-        runner.finish(job, run_at_once)
-    runner.close()
+    run_batch.evaluate_alone(batch, lambda *_: None)
     return batch
 
 
@@ -68,10 +64,10 @@ def test_a_run_is_measured_accepted_and_held_against_what_was_accepted(measured)
     assert figures["kit"]["failed"] == pytest.approx(1 / 3, abs=1e-6)
     latest, out = nightly._about(measured, figures), measured.out
     assert nightly._judged(out, latest, Tolerance()).is_completed()
-    with pytest.raises(ConfigError, match="no run was measured here yet"):
-        accept_latest(out)
-    (out / "latest.json").write_text(json.dumps(latest))
-    accept_latest(out)
+    (out / "accepted.json").write_text("{")
+    with pytest.raises(ConfigError, match=r"accepted\.json: cannot be read"):
+        nightly._judged(out, latest, Tolerance())
+    (out / "accepted.json").write_text(json.dumps(latest))
     assert nightly._judged(out, latest, Tolerance()).is_completed()
     worse = latest | {"figures": {"kit": {**figures["kit"], "generated": 0.1}}}
     failed = nightly._judged(out, worse, Tolerance())
@@ -80,3 +76,14 @@ def test_a_run_is_measured_accepted_and_held_against_what_was_accepted(measured)
     other = nightly._judged(out, latest | {"dataset_digest": "other"}, Tolerance())
     assert other.is_failed()
     assert "measured on other cases" in other.message
+
+
+def test_trackers_without_a_database_of_their_own_log_to_that_of_all_results(reports, config_file, tmp_path):
+    own = {"name": "mlflow", "database": str(tmp_path / "own.db")}
+    configs = [config_file("a", tracker="mlflow"), config_file("b", tracker=own), config_file("c")]
+    batch = batch_of(cases_in([reports(r="")]), configs, tmp_path / "runs" / "nightly")
+    found = nightly._in_one_database(batch, tmp_path / "runs" / "mlflow.db")
+    assert [getattr(c.tracker, "database", None) for c in found.configs] == [
+        tmp_path / "runs" / "mlflow.db", tmp_path / "own.db", None,
+    ]  # fmt: skip
+    assert [c.name for c in found.configs] == ["a", "b", "c"]

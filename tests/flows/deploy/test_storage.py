@@ -1,4 +1,4 @@
-"""A place: creating is exclusive, writing whole, and a move that was killed is finished."""
+"""A place: writing is whole, and a move that was killed is finished."""
 
 import uuid
 
@@ -14,15 +14,8 @@ def place(request, tmp_path):
     return Place(str(tmp_path / "box") if request.param == "local" else f"memory://{uuid.uuid4().hex}")
 
 
-def test_only_the_first_creates_a_file(place):
-    assert place.create("a/b", b"one")
-    assert not place.create("a/b", b"two")
-    assert place.read("a/b") == b"one"
-
-
 def test_what_is_not_there_reads_as_nothing(place):
     assert place.read("a") is None
-    assert place.modified("a") is None
     assert place.entry("a") is None
     assert place.entries() == []
     place.remove("a")

@@ -8,6 +8,7 @@ import time
 import pytest
 from starlette.testclient import TestClient
 
+from flows.case_files.folder_cases import write_left_out
 from flows.desk.app import application
 from tests.flows.desk.conftest import EVIL, foreign
 
@@ -32,6 +33,12 @@ def test_filters_and_search_are_addresses(client):
 def test_an_empty_folder_says_how_to_fill_it(tmp_path):
     with TestClient(application(tmp_path), base_url="http://localhost") as client:
         assert "sgcad run REPORT" in client.get("/").text
+
+
+def test_the_list_names_what_a_batch_left_out(client, config):
+    assert "left out" not in client.get("/").text
+    write_left_out(config, ("reports/notes.docx",))
+    assert "left out, 1 beside the cases: reports/notes.docx" in client.get("/").text
 
 
 def test_a_case_shows_report_drawing_map_player_facts_and_files(page, config):

@@ -4,16 +4,20 @@ import json
 import os
 import shutil
 import signal
+import socket
 import threading
+import time
 from pathlib import Path
 
 import pytest
 
 from flows.case import revise_case
-from flows.desk.index import version_of
-from flows.desk.mending import CaseChanged, Mender, Order
+from flows.case_files.case_version import version_of
+from flows.desk import mending
+from flows.desk.command import server_of, socket_at
+from flows.desk.mending import CaseChanged, ChangeResult, DeskBusy, Mender, Order
 from flows.desk.views import edit_form
-from sgcad_core.errors import SimulationFailed
+from sgcad_core.errors import SimulationFailed, WrongEdit
 
 CASE = "left-turn-at-signal"
 
@@ -57,6 +61,8 @@ def test_a_wrong_edit_is_refused_with_its_reason_and_changes_nothing(page, key, 
         ("roads.XX.lanes_forward", 2, "there is no"),
         ("vehicles.V2.start_lane", 7, "lane"),
         ("vehicles.V1.maneuver", "fly", "one of"),
+        ("roads.N.lanes_forward", "!!int ''", "is no value"),
+        ("roads.N.lanes_forward", "[" * 5000, "is no value"),
         ("no.such.field", 1, "there is no such field"),
     ):
         answer = page(key).change(**{field: value})
@@ -125,6 +131,90 @@ def test_the_death_of_the_process_changes_nothing_and_kills_nothing(config):
         with pytest.raises(SimulationFailed, match="died of SIGSEGV"):
             mender.change(order, version_of(order.folder))
     mender.close()
+
+
+def _slow(order):
+    time.sleep(1.5)
+    if not order.wanted():
+        raise WrongEdit("given up")
+    return ChangeResult("generated", {}, 1.5, True)
+
+
+def test_a_change_in_line_is_answered_in_time_and_the_worker_goes_on(config, monkeypatch):
+    monkeypatch.setattr(mending, "WAIT_S", 0.5)
+    mender, order = Mender(f"{__name__}:_slow"), Order("revise", config / CASE)
+    first = threading.Thread(target=mender.change, args=(order, version_of(order.folder)))
+    first.start()
+    time.sleep(0.2)
+    began = time.monotonic()
+    with pytest.raises(DeskBusy, match="was not made: try again"):
+        mender.change(order, version_of(order.folder))
+    assert time.monotonic() - began < 1.2
+    first.join()
+    assert mender.said(order.folder) == {}
+    mender.close()
+
+
+def test_too_many_changes_in_line_are_turned_away_at_once(config, monkeypatch):
+    monkeypatch.setattr(mending, "WAITING", 1)
+    mender, order = Mender(f"{__name__}:_slow"), Order("revise", config / CASE)
+    first = threading.Thread(target=mender.change, args=(order, version_of(order.folder)))
+    first.start()
+    time.sleep(0.2)
+    with pytest.raises(DeskBusy, match="wait already"):
+        mender.change(Order("revise", config / "rear-end-on-arterial"), "")
+    first.join()
+    mender.close()
+
+
+def test_a_change_without_a_client_is_neither_kept_in_line_nor_made(config, tmp_path):
+    mender = Mender(f"{__name__}:_slow")
+    gone = Order("revise", config / CASE, permit=tmp_path / "permit")
+    with pytest.raises(WrongEdit, match="given up"):  # a worker was idle: it asks before it writes
+        mender.change(gone, version_of(gone.folder))
+    there = Order("revise", config / CASE)
+    first = threading.Thread(target=mender.change, args=(there, version_of(there.folder)))
+    first.start()
+    time.sleep(0.2)
+    with pytest.raises(WrongEdit, match="given up while it waited"):
+        mender.change(gone, version_of(gone.folder))
+    first.join()
+    mender.close()
+
+
+def test_only_an_idle_worker_is_warmed(config):
+    mender = Mender(f"{__name__}:_slow")
+    for name in ("a", "b", "c", "d"):
+        mender.warm(config.parent / name / "case")
+    assert len(mender._warmed) == mending.WORKERS
+    mender.close()
+
+
+def test_an_edit_whose_client_has_gone_changes_nothing(page, key, config):
+    """A client that ends its connection at once, on a server of its own."""
+    mine, before = page(key), version_of(config / CASE)
+    app = mine.client.app
+    listening = socket_at("127.0.0.1", 0)
+    server = server_of(app)
+    serving = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
+    serving.start()
+    body = json.dumps({"version": mine.version, "edits": {"roads.N.lanes_forward": 2}}).encode()
+    head = (
+        f"POST /edit/{key} HTTP/1.1\r\nHost: localhost\r\nContent-Length: {len(body)}\r\nX-Desk-Token: {mine.token}"
+        f"\r\nCookie: sgcad_desk={mine.client.cookies['sgcad_desk']}\r\n\r\n"
+    )
+    with socket.create_connection(listening.getsockname()) as client:
+        client.sendall(head.encode() + body)
+        time.sleep(0.5)
+    deadline = time.monotonic() + 60
+    mender = app.state.desk.mender
+    while mender._in_line._value < mending.WAITING and time.monotonic() < deadline:
+        time.sleep(0.1)
+    server.should_exit = True
+    serving.join()
+    assert mender._in_line._value == mending.WAITING
+    assert version_of(config / CASE) == before
+    assert not revise_case.opened(config / CASE).edits()
 
 
 def test_a_change_that_was_overtaken_starts_no_process(tmp_path):

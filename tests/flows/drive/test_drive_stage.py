@@ -2,7 +2,7 @@
 
 import json
 
-from flows.batch.track_cases import params_of
+from flows.batch.tracking.track_cases import params_of
 from flows.case.run_case import run_case
 from flows.case_files.find_cases import Case
 from plugins.tracker.figures import case_figures
@@ -45,8 +45,8 @@ def test_result_json_tells_what_the_contact_changed_and_where_both_come_to_rest(
 def test_trackers_get_every_outcome_as_a_figure(tmp_path, config_file, reports):
     _, result, folder = go(tmp_path, config_file, reports)
     figures = case_figures(folder, result)
-    assert figures["drive_script_initiator_unchanged"] == 1.0
-    assert figures["drive_script_initiator_lost"] == 0.0
+    assert figures["drive/script_initiator_unchanged"] == 1.0
+    assert figures["drive/script_initiator_lost"] == 0.0
 
 
 def test_a_refused_case_is_not_driven(tmp_path, config_file, reports):

@@ -141,6 +141,13 @@ def test_a_network_that_is_none_cannot_be_drawn():
         drawing_of("<nothing/>")
 
 
+@pytest.mark.parametrize("shape", ["0,0 x,1 2,2", "0,0 1 2,2", "0,0 1,1 2,"])
+def test_odd_places_of_a_network_are_refused(shape):
+    net = NET.replace("</net>", f'<junction id="odd" type="priority" x="0" y="0" shape="{shape}"/></net>')
+    with pytest.raises(InvalidOutput, match="net_xml: a place"):
+        drawing_of(net)
+
+
 @pytest.mark.parametrize("contact", [True, False])
 def test_the_picture_shows_everyone_in_color(contact):
     made = view(contact=contact)

@@ -63,5 +63,25 @@ def test_the_command_prints_the_page_and_ends_with_2_on_a_bad_file(file, tmp_pat
     assert "no such file" in bad.stderr
 
 
+@pytest.mark.parametrize("name", ["...xosc", "..xosc", ".. .xosc", "a\nb.xosc"])
+def test_whatever_the_file_is_called_its_folder_lies_in_out(file, tmp_path, name):
+    odd = file.rename(tmp_path / name)
+    (folder,) = play_any_xosc.play(odd, tmp_path / "deep" / "out", [], [], 5, 300.0)
+    assert folder.resolve().parent == (tmp_path / "deep" / "out").resolve()
+    assert {path.name for path in tmp_path.iterdir()} == {name, "deep"}
+    assert [path.name for path in (tmp_path / "deep").iterdir()] == ["out"]
+
+
+def test_of_very_many_entities_the_nearest_are_measured(file, tmp_path, monkeypatch):
+    places = {f"V{k}": world(10 * k, 0) for k in range(1, 7)}
+    file.write_text(scenario(places, speeds={"V1": 5}))
+    monkeypatch.setattr(play_any_xosc, "MAX_PAIR_INSTANTS", 3 * 81)
+    (folder,) = play_any_xosc.play(file, tmp_path / "out", [], [], 5, 300.0)
+    notes = [note["what"] for note in json.loads((folder / "played.json").read_text())["notes"]]
+    assert "the metrics are those of the 3 of 6 entities that come nearest to V1" in notes
+    assert json.loads((folder / "metrics.json").read_text())["exact"]["collision"]
+    assert len(json.loads((folder / "played.json").read_text())["entities"]) == 6
+
+
 def test_the_sample_ends_by_itself():
     assert at(4) in HIT

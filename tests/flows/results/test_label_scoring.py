@@ -76,7 +76,7 @@ FULL = {
     "vehicles": {
         "V1": {"maneuver": "slowing", "lane": 1, "speed_mph": 26.8, "evasion": ["brake"],
                "rest": {"facing": "E", "where": "road"}},
-        "V2": {"maneuver": "stopped", "rest": {"facing": "NE", "where": "road"}},
+        "V2": {"maneuver": "stopped", "rest": {"facing": "E", "where": "road"}},
     },
     "impacts": [["V1", "V2"]],
 }  # fmt: skip

@@ -9,9 +9,11 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
+from flows.case_files.folder_cases import write_left_out
 from flows.results import measures, writing
 from flows.results.layouts import LAYOUTS
-from flows.results.table import refusal_counts
+from flows.results.reading import load_study as load_results
+from flows.results.table import refusal_counts, tables_of
 from flows.study.published import publication
 from flows.study_file.spec import load_study
 from sgcad_core import settings
@@ -70,6 +72,13 @@ def test_a_study_half_done_says_so_and_stands_on_what_is_there(tables):
     (table,) = [t for t in made.tables if t.key == "generation"]
     assert [(r.done, r.of) for r in table.rows] == [(2, 3), (1, 3)]
     assert table.rows[1].cells["generated"].n == 1
+
+
+def test_what_a_batch_left_out_is_a_remark(tables):
+    folder = tables(TWO).study.folder
+    for arm in TWO:
+        write_left_out(folder / arm, ("cases/notes.docx",))
+    assert tables_of(load_results(folder)).remarks[-1].startswith("left out, 1 beside the cases: cases/notes.docx")
 
 
 def test_an_arm_that_has_not_begun_has_empty_cells(tables):

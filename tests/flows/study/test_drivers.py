@@ -28,7 +28,7 @@ def parents(tmp_path_factory):
     assert ended.returncode == 0, ended.stdout + ended.stderr
     client = MlflowClient(f"sqlite:///{place / 'runs' / 'mlflow.db'}")
     experiment = client.get_experiment_by_name("study/two")
-    words = "tags.`sgcad.level` = 'config' and metrics.driven_responder_avoided >= 0"
+    words = "tags.`sgcad.level` = 'config' and metrics.`driven/responder_avoided` >= 0"
     return {r.info.run_name.split("/")[-1]: r for r in client.search_runs([experiment.experiment_id], words)}
 
 
@@ -37,15 +37,15 @@ def test_one_search_finds_every_arm_by_the_same_name(parents):
 
 
 def test_arms_have_the_same_figures_of_drives(parents):
-    names = {arm: {m for m in run.data.metrics if m.startswith("driven_")} for arm, run in parents.items()}
-    told = {f"driven_{role}_{o}" for role in ("initiator", "responder")
+    names = {arm: {m for m in run.data.metrics if m.startswith("driven/")} for arm, run in parents.items()}
+    told = {f"driven/{role}_{o}" for role in ("initiator", "responder")
             for o in ("avoided", "mitigated", "unchanged", "worse", "lost", "failed")}  # fmt: skip
     assert told <= names["script"] & names["aeb"]
 
 
 def test_figures_are_shares_over_the_cases_and_the_drivers_differ(parents):
     script, aeb = parents["script"].data, parents["aeb"].data
-    assert script.metrics["driven_responder_unchanged"] == 1.0
-    assert aeb.metrics["driven_responder_unchanged"] < 1.0
-    assert script.metrics["driven_responder_delta_v_mps"] > aeb.metrics["driven_responder_delta_v_mps"]
+    assert script.metrics["driven/responder_unchanged"] == 1.0
+    assert aeb.metrics["driven/responder_unchanged"] < 1.0
+    assert script.metrics["driven/responder_delta_v_mps"] > aeb.metrics["driven/responder_delta_v_mps"]
     assert (script.params["drive.drivers"], aeb.params["drive.drivers"]) == ("script", "aeb")

@@ -13,11 +13,10 @@ import psutil
 import pytest
 import yaml
 
-from flows.batch.plan_batch import JobRunner
+from flows.batch import run_batch
 from flows.study import run_study
 from flows.study.plan import plan
 from flows.study_file.spec import load_study
-from sgcad_core.asking.refine import run_at_once
 
 DEMO = Path(__file__).resolve().parents[3] / "docs" / "demo"
 ARMS = [
@@ -77,11 +76,7 @@ def figures(folder):
 @pytest.mark.slow
 def test_a_killed_study_goes_on_where_it_stopped_and_no_number_changes(study, tmp_path):
     whole = plan(load_study(study), tmp_path / "whole")
-    runner = JobRunner(whole.batch)
-    runner.begin(whole.jobs)
-    for job in whole.jobs:
-        runner.finish(job, run_at_once)
-    runner.close()
+    run_batch.evaluate_alone(whole.batch, lambda *_: None, whole.jobs)
 
     folder = tmp_path / "killed" / "studies" / "resume"
     first = start(study, tmp_path / "killed")
@@ -108,22 +103,20 @@ def test_a_killed_study_goes_on_where_it_stopped_and_no_number_changes(study, tm
     assert not list(folder.glob("**/.partial-*"))
 
 
-def test_what_arms_share_is_computed_once(tmp_path, config_file, reports):
+def test_what_arms_share_is_computed_once(under_server, tmp_path, config_file, reports):
     config_file()
     file = tmp_path / "kits.yaml"
     arms = [{"name": f"k{n}", "config": "kit.yaml", "set": [f"seed={n}"]} for n in range(3)]
     file.write_text(yaml.safe_dump({"title": "Kits", "arms": arms}))
     made = plan(load_study(file), tmp_path / "out", cases=[reports(a="", b="REFUSE")], jobs=1)
-    runner = JobRunner(made.batch)
-    runner.begin(made.jobs)
-    results = {job.name: runner.finish(job, run_at_once).result for job in made.jobs}
-    runner.close()
+    results = {}
+    run_study.run(made, lambda job, ending, _: results.update({job.name: ending.result}))
     assert [results[f"k{n}/a"]["shared"] for n in range(3)] == [[], *[["read", "road", "scenario", "simulate"]] * 2]
     assert [results[f"k{n}/b"]["shared"] for n in range(3)] == [[], ["read", "road"], ["read", "road"]]
     assert {results[f"k{n}/b"]["status"] for n in range(3)} == {"refused"}
     shutil.rmtree(made.folder / ".stages")
     again = plan(load_study(file), tmp_path / "out", cases=[tmp_path / "cases"], jobs=1)
-    assert all(JobRunner(again.batch).reusable(job) for job in again.jobs), "finished cases need no shelf"
+    assert all(again.batch.reusable(job) for job in again.jobs), "finished cases need no shelf"
 
 
 def test_a_fresh_study_forgets_what_was_shared(tmp_path, config_file, reports, monkeypatch):
@@ -137,7 +130,7 @@ def test_a_fresh_study_forgets_what_was_shared(tmp_path, config_file, reports, m
         old.parent.mkdir(parents=True, exist_ok=True)
         old.write_bytes(b"old")
         monkeypatch.setattr(
-            "flows.batch.run_batch.evaluate", lambda batch, on_ending, jobs, on_turn: None
+            "flows.batch.run_batch.evaluate", lambda batch, on_ending, jobs, on_step: None
         )  # no server for this
         run_study.run(made, print)
         assert old.exists() is left

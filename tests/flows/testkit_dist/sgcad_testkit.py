@@ -23,7 +23,7 @@ from sgcad_core.case.records import (
     Scenario,
     Trajectory,
 )
-from sgcad_core.errors import InvalidOutput, MissingTool, Refused, SimulationFailed
+from sgcad_core.errors import InvalidOutput, MissingTool, ProcessDied, Refused, SimulationFailed
 from sgcad_core.geometry.plane import Box, contact_area, overlap
 from sgcad_core.interfaces import RoadWriter, ScenarioWriter, Simulator, Tracker, Validator
 from sgcad_core.records.specs import Contact
@@ -117,11 +117,18 @@ class KitAskingRoad(RoadWriter):
 
 
 class KitSimulator(Simulator):
-    """Replays the plan and looks for the first overlap of V1 and V2; `fails` where told to."""
+    """Replays the plan and looks for the first overlap of V1 and V2; `fails` where told to.
+
+    Its process dies unless the file `died` is there, which is made then.
+    """
 
     fails: bool = False
+    died: Path | None = None
 
     def execute(self, scenario, network):
+        if self.died and not self.died.exists():
+            self.died.touch()
+            raise ProcessDied("the simulator was killed", from_outside=True)
         if self.fails:
             raise SimulationFailed("the simulator died of SIGSEGV")
         one, two = scenario.planned
@@ -145,7 +152,3 @@ class KitTracker(Tracker):
             raise OSError("the tracking server is down")
         with self.file.open("a") as out:
             out.write(f"{config_name}/{case_dir.name} {result['status']}\n")
-
-    def log_generation(self, config_name, case, query: Query, generation):
-        with self.file.open("a") as out:
-            out.write(f"call {case} {query.stage} {query.attempt}\n")
