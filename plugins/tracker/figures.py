@@ -1,13 +1,13 @@
 """The parameters and figures that trackers log of a case, flat, with attempts as steps. Knows the run folder only.
 
-Names of figures are joined with "_" ("paper_ice", "seconds_road"), so that a search needs no quotes; only finite
-numbers are figures, truth values are 0 or 1. Parameters have the names of the YAML and of `--set` ("decoder",
-"decoder.alpha"). docs/mlflow.md lists the names.
+A figure is named by its group and what it is, joined with "_" ("paper/time_to_collision_s", "seconds/road"): MLflow
+draws one section of charts a group. Status and collision have no group. Only finite numbers are figures, truth values
+are 0 or 1. Parameters have the names of the YAML and of `--set` ("decoder", "decoder.alpha"). docs/mlflow.md lists the
+names.
 """
 
 from __future__ import annotations
 
-import json
 import math
 from array import array
 from collections import defaultdict
@@ -16,9 +16,18 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
+from plugins.tracker.attempts import attempts_of, read_json
+
 STATUSES = ("generated", "refused", "exhausted", "failed")
-OF_ONE_CASE = ("attempt_", "grounding_", "system/")
-"""Prefixes of figures without a mean: steps of attempts, fields that only some specs have, the machine."""
+OF_ONE_CASE = ("attempt/", "grounding/")
+"""Prefixes of figures without a mean: steps of attempts, fields that only some specs have."""
+OF_ANSWER = ("prompt_tokens", "answer_tokens", "model_calls")
+"""Figures of a model's answer in an attempt; the trace has the rest."""
+TELL_APART = (
+    "backbone", "backbone.model", "decoder", "road_writer", "scenario_writer", "retriever", "second_opinion", "seed",
+    "drive.drivers",
+)  # fmt: skip
+"""Parameters that a case has too, beside those of the decoder: all others are its arm's alone."""
 
 
 def flat(tree: Any, name: str = "") -> Iterator[tuple[str, Any]]:
@@ -38,6 +47,11 @@ def parameters(params: Mapping[str, Any]) -> dict[str, str]:
     """A config's values: a plugin's name under its kind, its fields behind a dot; lists of plugins by their names."""
     named = (item for key, entry in params.items() for item in _of(key, entry))
     return {name: "none" if value is None else str(value) for name, value in named}
+
+
+def case_parameters(params: Mapping[str, str]) -> dict[str, str]:
+    """Those of `parameters` by which cases of different arms are told apart."""
+    return {name: value for name, value in params.items() if name in TELL_APART or name.startswith("decoder.")}
 
 
 def _of(key: str, entry: Any) -> Iterator[tuple[str, Any]]:
@@ -79,14 +93,21 @@ def case_figures(case_dir: Path, result: Mapping[str, Any]) -> dict[str, float]:
         "person_facts": float(person.get("facts", 0)),
         "person_disagreed": float(person.get("disagreed", 0)),
     }
-    account = {k: v for k, v in (result.get("account") or {}).items() if k not in ("verdict", "items")}
-    figures |= {f"account_{name}": float(count) for name, count in account.items()}
-    figures["account_whole"] = float((result.get("account") or {}).get("verdict") == "whole")
-    parts = {"network": network, "attempts": result.get("attempts"), "seconds": result.get("seconds")}
-    figures |= numbers(parts) | numbers({"grounding": result.get("grounding")})
+    account = {k: v for k, v in (result.get("account") or {}).items() if k not in ("verdict", "sentence", "items")}
+    figures |= {f"account/{name}": float(count) for name, count in account.items()}
+    figures["account/disagreements"] = float(len(result.get("disagreements") or ()))
+    figures["account/whole"] = float((result.get("account") or {}).get("verdict") == "whole")
+    seconds = dict(result.get("seconds") or {})
+    groups = {"network": network, "attempts": result.get("attempts"), "grounding": result.get("grounding")}
     metrics = read_json(case_dir / "metrics.json") or {}
-    figures |= numbers({"driven": _driven(metrics.get("drive") or {})})
-    return figures | numbers({k: v for k, v in metrics.items() if k != "thresholds"})
+    groups |= {"seconds": seconds | {"total": sum(seconds.values())}, "driven": _driven(metrics.get("drive") or {})}
+    return figures | grouped(groups) | grouped({k: v for k, v in metrics.items() if k != "thresholds"})
+
+
+def grouped(groups: Mapping[str, Any]) -> dict[str, float]:
+    """The numbers of every group behind its name and "/"; a number without a group keeps its name."""
+    found = {name: numbers(tree if isinstance(tree, Mapping) else {"": tree}) for name, tree in groups.items()}
+    return {f"{group}/{name}" if name else group: v for group, tree in found.items() for name, v in tree.items()}
 
 
 def _driven(drivers: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -95,16 +116,12 @@ def _driven(drivers: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def attempt_figures(case_dir: Path) -> Iterator[tuple[int, dict[str, float]]]:
-    """(attempt number, {"road_findings": n, "road_seconds": s, ...}) of every attempt kept."""
-    for folder in sorted((case_dir / "attempts").glob("*-*")):
-        stage, _, number = folder.name.rpartition("-")
-        if not number.isdigit():
-            continue
-        findings = read_json(folder / "findings.json") or []
-        about = read_json(folder / "attempt.json") or {}
-        figures = {"findings": sum(f.get("severity") == "repair" for f in findings)} | numbers(about)
-        figures.pop("number", None)
-        yield int(number), {f"{stage}_{name}": float(value) for name, value in figures.items()}
+    """(attempt number, {"attempt/road_findings": n, "attempt/road_seconds": s, ...}) of every attempt kept."""
+    for one in attempts_of(case_dir):
+        repairs = sum(finding.get("severity") == "repair" for finding in one.findings)
+        figures = {"findings": float(repairs), "seconds": one.seconds}
+        figures |= numbers({name: (one.generation or {}).get(name) for name in OF_ANSWER})
+        yield one.number, {f"attempt/{one.stage}_{name}": value for name, value in figures.items()}
 
 
 def means(cases: Iterable[Mapping[str, float]]) -> dict[str, float]:
@@ -122,8 +139,3 @@ def means(cases: Iterable[Mapping[str, float]]) -> dict[str, float]:
     found = {name: fmean(columns[name]) for name in sorted(columns)}
     counts = {f"cases_{status}": float(sum(columns.get(status, ()))) for status in STATUSES}
     return found | counts | {"cases": float(count)}
-
-
-def read_json(path: Path) -> Any:
-    """Content of a JSON file; None if there is no such file."""
-    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from pydantic import Field
 
+from plugins.tracker.attempts import attempts_of
 from plugins.tracker.figures import case_figures
-from sgcad_core.case.records import Generation, Query
 from sgcad_core.interfaces import Tracker
 
 
 class Jsonl(Tracker):
-    """Appends one line for each case to `cases.jsonl` and, with `folder` set, one for each model call to `calls.jsonl`.
+    """Appends a line for each case to `cases.jsonl` and, with `folder` set, one for each model answer to `calls.jsonl`.
 
     A line is written by one `write` in append mode, so several processes may share the files.
     """
@@ -31,13 +32,11 @@ class Jsonl(Tracker):
             "result": result,
         }
         self._append(self.folder or case_dir.parent.parent, "cases.jsonl", line)
-
-    def log_generation(self, config_name: str, case: str, query: Query, generation: Generation) -> None:
-        """Appends the call to calls.jsonl if `folder` is set."""
         if self.folder is not None:
-            line: dict[str, Any] = {"config": config_name, "case": case, "query": query.model_dump()}
-            line |= {"text": generation.text, "seconds": generation.seconds, "grounding": dict(generation.grounding)}
-            self._append(self.folder, "calls.jsonl", line)
+            for attempt in attempts_of(case_dir):
+                if attempt.generation:
+                    of = {"config": config_name, "case": case_dir.name, **asdict(attempt)}
+                    self._append(self.folder, "calls.jsonl", of)
 
     @staticmethod
     def _append(folder: Path, name: str, line: dict[str, Any]) -> None:

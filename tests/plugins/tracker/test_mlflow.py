@@ -1,82 +1,21 @@
 """MLflow: a parent an arm with means, a run a case, resumed without loss, from several processes at a time."""
 
 import json
-import os
 import subprocess
 import sys
 import time
 from functools import partial
-from itertools import count
+from pathlib import Path
 
 import pytest
 
-from plugins.tracker import mlflow_store
+from plugins.tracker import mlflow_arm
 from plugins.tracker.figures import means
 from plugins.tracker.mlflow import MlflowTracker
-from plugins.tracker.mlflow_store import KIND, NOTE, store_of
-from sgcad_core.case.records import Generation, Query
-from sgcad_core.case.tracker_arm import Arm, Dataset
+from plugins.tracker.mlflow_store import KIND, NOTE
 from sgcad_core.errors import ConfigError
 from sgcad_core.settings import ROOT
-
-RESULT = {
-    "status": "generated",
-    "attempts": {"road": 2, "scenario": 1},
-    "collision": {"declared": {"striker": "V1"}, "observed": {"t_s": 4.2}, "realised": True},
-    "seconds": {"read": 0.1, "road": 1.4},
-}
-REFUSED = {"status": "refused", "seconds": {"read": 0.1}, "collision": {"realised": False}}
-PARAMS = {"seed": 42, "decoder": {"name": "cad", "alpha": 0.7}, "validators": [{"name": "topology"}]}
-GENERATION = Generation(text="{}", seconds=1.5, prompt_tokens=11, model_calls=2, grounding={"$.legs": 0.75})
-numbers = count()
-
-
-@pytest.fixture(scope="module")
-def out(tmp_path_factory):
-    """One output folder with cases c1 to c4; making its database costs seconds, so it is shared."""
-    folder = tmp_path_factory.mktemp("out")
-    for case in ("c1", "c2", "c3", "c4"):
-        for number, findings in ((1, 2), (2, 0)):
-            place = folder / "kit" / case / "attempts" / f"road-{number:02d}"
-            place.mkdir(parents=True)
-            (place / "findings.json").write_text(json.dumps([{"severity": "repair"}] * findings))
-            (place / "attempt.json").write_text(json.dumps({"number": number, "seconds": 0.5 * number}))
-        (folder / "kit" / case / "player.html").write_text("<html>")
-    return folder
-
-
-@pytest.fixture
-def tracker(out):
-    """Makes trackers of an experiment of the test's own, each as a process of its own would have it."""
-    experiment = f"study/test-{os.getpid()}-{next(numbers)}"
-
-    def make(**fields):
-        store_of.cache_clear()
-        return MlflowTracker(
-            **{"database": out / "mlflow.db", "experiment": experiment, "system_metrics_s": 0, **fields}
-        )
-
-    return make
-
-
-def arm(out, **changes):
-    dataset = Dataset(name="cases", digest="ab" * 32, source="/cases", cases=4)
-    plugins = {"decoder": "plugins.decoder.cad:Cad 1", "retriever": "plugins.retriever.lancedb:LanceDB 1 kb-v1-aa"}
-    fields = {"config": "kit", "params": PARAMS, "out": str(out), "dataset": dataset, "plugins": plugins}
-    fields |= {"git_commit": "c0ffee", "hardware": {"processor": "a CPU", "cores": 2, "gpus": []}}
-    return Arm(**fields | changes)
-
-
-def runs_of(tracker, text=""):
-    """(client, parents, children by case), found by a search as a person would write it."""
-    store = tracker._store(None)
-    runs = store.client.search_runs([store.experiment_id], text, order_by=["attributes.start_time ASC"])
-    parents = [r for r in runs if "mlflow.parentRunId" not in r.data.tags]
-    return store.client, parents, {r.info.run_name: r for r in runs if "mlflow.parentRunId" in r.data.tags}
-
-
-def log(tracker, out, case, result=RESULT):
-    tracker.log_case("kit", PARAMS, out / "kit" / case, result)
+from tests.plugins.tracker.mlflow_cases import PARAMS, REFUSED, RESULT, arm, log, runs_of
 
 
 def test_an_arm_has_a_parent_with_its_data_plugins_commit_and_hardware_and_the_means_of_its_cases(out, tracker):
@@ -95,7 +34,7 @@ def test_an_arm_has_a_parent_with_its_data_plugins_commit_and_hardware_and_the_m
     }  # fmt: skip
     assert {run.data.tags["mlflow.parentRunId"] for run in children.values()} == {parent.info.run_id}
     assert parent.data.metrics["collision_realised"] == pytest.approx(1 / 3)
-    assert parent.data.metrics["attempts_road"] == 2.0
+    assert parent.data.metrics["attempts/road"] == 2.0
     assert [parent.data.metrics[f"cases{s}"] for s in ("", "_generated", "_refused", "_failed")] == [3, 1, 1, 1]
     ((used,),) = [[i.dataset for i in parent.inputs.dataset_inputs]]
     assert (used.name, used.digest, json.loads(used.profile)["cases"]) == ("cases", "ab" * 8, 4)
@@ -103,7 +42,7 @@ def test_an_arm_has_a_parent_with_its_data_plugins_commit_and_hardware_and_the_m
     assert tags["plugin.retriever"].endswith("kb-v1-aa")
     assert (tags["hardware.processor"], tags["hardware.gpus"]) == ("a CPU", "none")
     assert {r.data.tags["mlflow.source.git.commit"] for r in (parent, *children.values())} == {"c0ffee"}
-    history = client.get_metric_history(children["c1"].info.run_id, "attempt_road_findings")
+    history = client.get_metric_history(children["c1"].info.run_id, "attempt/road_findings")
     assert [(m.step, m.value) for m in history] == [(1, 2.0), (2, 0.0)]
     assert {f.path for f in client.list_artifacts(children["c1"].info.run_id)} == {"player.html", "attempts"}
 
@@ -168,11 +107,10 @@ def test_the_headline_comes_first_and_is_explained_on_every_page(out, tracker):
     log(made, out, "c1", RESULT | {"account": account})
     made.end(arm(out), finished=True)
     client, (parent,), children = runs_of(made)
-    for run in (parent, children["c1"]):
-        first = sorted(run.data.metrics)[0]
-        assert first == "0_headline/01_collision_realised"
-        assert run.data.metrics[first] == run.data.metrics["collision_realised"] == 1
-    assert "| `account_lacking` | 1 | things told that the scenario lacks" in parent.data.tags[NOTE]
+    first = sorted(parent.data.metrics)[0]
+    assert first == "0_headline/01_collision_realised"
+    assert parent.data.metrics[first] == parent.data.metrics["collision_realised"] == 1
+    assert "| `account/lacking` | 1 | things told that the scenario lacks" in parent.data.tags[NOTE]
     note, page = children["c1"].data.tags[NOTE], made.page("kit", "c1")
     assert "told 3, in the scenario 2, lacking 1, assumed 0" in note
     assert r"- lacking: a \*stop\* sign" in note
@@ -181,6 +119,7 @@ def test_the_headline_comes_first_and_is_explained_on_every_page(out, tracker):
     assert children["c1"].data.tags["sgcad.prefect"] == prefect
     experiment = client.get_experiment(parent.info.experiment_id)
     assert "`0_headline`" in experiment.tags[NOTE]
+    assert f"](#/experiments/{experiment.experiment_id}/runs?workflowType=machine_learning)" in experiment.tags[NOTE]
     assert experiment.tags[KIND] == "custom_model_development"
 
 
@@ -209,25 +148,48 @@ def test_the_machine_is_watched_while_an_arm_runs(out, tracker):
     while named not in runs_of(made)[1][0].data.metrics and time.monotonic() < deadline:
         made._begun["kit"]._monitor.mlflow_logger.flush()
     made.end(arm(out), finished=True)
-    _, (parent,), children = runs_of(made)
-    assert named in parent.data.metrics
-    assert children["c1"].data.metrics["system/process_memory_megabytes"] > 1
+    assert named in runs_of(made)[1][0].data.metrics
 
 
-def test_a_model_call_is_a_trace_of_its_case(out, tracker):
-    import mlflow
-
-    made = tracker()
+def test_the_machine_is_not_watched_while_cases_are_logged_later(out, tracker):
+    made = tracker(system_metrics_s=0.05)
+    made.begin(arm(out, live=False))
     log(made, out, "c1")
-    made.log_generation("kit", "c1", Query(task="draw", attempt=2, stage="road"), GENERATION)
-    mlflow.flush_trace_async_logging()
-    client, _, children = runs_of(made)
-    (trace,) = client.search_traces(locations=[children["c1"].info.experiment_id])
-    (span,) = trace.data.spans
-    assert (span.name, span.inputs["task"], span.attributes["attempt"]) == ("c1[2]", "draw", 2)
-    assert span.outputs["grounding"] == {"$.legs": 0.75}
-    assert trace.info.trace_metadata["mlflow.sourceRun"] == children["c1"].info.run_id
-    assert (span.end_time_ns - span.start_time_ns) / 1e9 == pytest.approx(1.5, abs=0.01)
+    assert made._begun["kit"]._monitor is None
+    made.end(arm(out), finished=True)
+
+
+def test_an_arm_keeps_its_config_and_a_table_of_its_cases(out, tracker, tmp_path):
+    made = tracker()
+    (out / "kit" / "config.yaml").write_text("seed: 42\n")
+    made.begin(arm(out))
+    log(made, out, "c2", REFUSED | {"reason": "no road is told"})
+    log(made, out, "c1")
+    made.end(arm(out), finished=True)
+    client, (parent,), _ = runs_of(made)
+    assert json.loads(parent.data.tags["mlflow.loggedArtifacts"]) == [{"path": "cases.json", "type": "table"}]
+    table = json.loads(Path(client.download_artifacts(parent.info.run_id, "cases.json", str(tmp_path))).read_text())
+    rows = [dict(zip(table["columns"], row, strict=True)) for row in table["data"]]
+    assert [(r["case"], r["outcome"], r["seconds/total"], r["account/whole"]) for r in rows] == [
+        ("c1", "generated: no contact", 1.5, 0.0), ("c2", "refused: no road is told", 0.1, 0.0)
+    ]  # fmt: skip
+    assert {f.path for f in client.list_artifacts(parent.info.run_id)} == {"cases.json", "config.yaml"}
+
+
+def test_a_prompt_gets_a_new_version_only_where_its_text_changed(out, tracker):
+    texts = {"draw_road": "Draw the {roads}.", "draw_crash": "Draw the crash."}
+    for seed, changed in ((1, {}), (2, {}), (3, {"draw_road": "Draw all {roads}."})):
+        made = tracker()
+        given = arm(out, params=PARAMS | {"seed": seed}, prompts=texts | changed)
+        made.begin(given)
+        made.end(given, finished=True)
+    client, parents, _ = runs_of(made)
+    linked = [json.loads(run.data.tags["mlflow.linkedPrompts"]) for run in parents]
+    assert [{p["name"]: p["version"] for p in of} for of in linked] == [
+        {"draw_road": "1", "draw_crash": "1"}, {"draw_road": "1", "draw_crash": "1"},
+        {"draw_road": "2", "draw_crash": "1"},
+    ]  # fmt: skip
+    assert client.load_prompt("draw_road", version="2").template == "Draw all {roads}."
 
 
 @pytest.mark.slow
@@ -251,46 +213,6 @@ def test_processes_that_begin_together_share_one_parent(out, tracker):
     assert set(children) == {"c1", "c2", "c3"}
 
 
-# ------------------------------------------------------------------ training logs
-LINES = [
-    {"event": "begun with", "folder": "weights", "tensors": 128},
-    {"step": 20, "seconds": 23.5, "loss": 0.5, "right": 0.8},
-    {"step": 40, "seconds": 40.25, "loss": 0.25, "right": 0.9},
-]
-
-
-def test_a_training_log_is_logged_once_however_often_it_is_told(tracker):
-    made = tracker()
-    assert made.log_training("mini", {"seed": 0}, LINES[:1]) == 0
-    assert made.log_training("mini", {"seed": 0}, LINES[:2]) == 2
-    assert made.log_training("mini", {"seed": 0}, LINES[:2]) == 0
-    again = tracker()
-    assert again.log_training("mini", {"seed": 0, "size": "tiny"}, LINES) == 1
-    client, (run,), _ = runs_of(again)
-    history = client.get_metric_history(run.info.run_id, "loss")
-    assert [(m.step, m.value, m.timestamp - run.info.start_time) for m in history] == [
-        (20, 0.5, 23_500), (40, 0.25, 40_250)
-    ]  # fmt: skip
-    assert run.data.params == {"seed": "0", "size": "tiny"}
-    assert run.data.tags["event.0"] == "begun with: folder weights, tensors 128"
-
-
-def test_lines_that_a_killed_import_had_written_are_kept_once(tracker):
-    made = tracker()
-    made.log_training("mini", {}, LINES)
-    client, (run,), _ = runs_of(made)
-    client.set_tag(run.info.run_id, "sgcad.lines", "1")
-    made.log_training("mini", {}, LINES)
-    assert [m.step for m in client.get_metric_history(run.info.run_id, "loss")] == [20, 40]
-
-
-def test_a_log_begun_anew_is_another_run(tracker):
-    made = tracker()
-    made.log_training("mini", {}, LINES)
-    made.log_training("mini", {}, [LINES[1] | {"loss": 0.75}])
-    assert sorted(r.data.metrics["loss"] for r in runs_of(made)[1]) == [0.25, 0.75]
-
-
 def test_a_database_that_is_none_is_refused_with_a_remedy(out, tmp_path):
     (tmp_path / "no.db").write_text("this is no database, and it is long enough not to look empty " * 20)
     with pytest.raises(ConfigError, match=r"no.db: this is no database of MLflow's.*tracker=jsonl"):
@@ -299,7 +221,7 @@ def test_a_database_that_is_none_is_refused_with_a_remedy(out, tmp_path):
 
 def test_means_are_read_page_by_page_and_a_case_done_again_counts_once(out, tracker, monkeypatch):
     """A batch of 10,000 cases must not hold all their runs at a time."""
-    monkeypatch.setattr(mlflow_store, "MAX_RUNS", 2)
+    monkeypatch.setattr(mlflow_arm, "MAX_RUNS", 2)
     made = tracker()
     made.begin(arm(out))
     for case, result in (("c1", RESULT), ("c2", REFUSED), ("c3", RESULT), ("c4", RESULT), ("c1", REFUSED)):
@@ -312,7 +234,7 @@ def test_means_are_read_page_by_page_and_a_case_done_again_counts_once(out, trac
 
 
 def test_means_take_what_comes_once():
-    assert means(iter([{"a": 1.0, "generated": 1.0, "attempt_road": 9.0}, {"a": 2.0}])) == {
+    assert means(iter([{"a": 1.0, "generated": 1.0, "attempt/road": 9.0}, {"a": 2.0}])) == {
         "a": 1.5, "generated": 1.0, "cases_generated": 1.0, "cases_refused": 0.0, "cases_exhausted": 0.0,
         "cases_failed": 0.0, "cases": 2.0,
     }  # fmt: skip

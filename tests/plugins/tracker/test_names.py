@@ -6,6 +6,7 @@ import re
 import pytest
 
 from plugins.tracker.figures import attempt_figures, case_figures, means
+from plugins.tracker.headline import headline
 from plugins.tracker.mlflow import _steps
 from sgcad_core.settings import ROOT
 
@@ -34,8 +35,13 @@ def logged(tmp_path_factory):
     result = ending.result | {"grounding": {"road.$.legs": 0.5}}
     assert json.loads((folder / "result.json").read_text())["status"] == "generated"
     assert list(attempt_figures(folder))
+    asked = folder / "attempts" / "road-01" / "attempt.json"
+    generation = {"prompt_tokens": 1, "answer_tokens": 1, "model_calls": 1}
+    asked.write_text(json.dumps(json.loads(asked.read_text()) | {"generation": generation}))
     figures = case_figures(folder, result)
-    return {name for step in _steps(folder, result).values() for name in step} | set(means([figures]))
+    return {name for step in _steps(folder, result).values() for name in step} | set(
+        headline(means([figures])) | means([figures])
+    )
 
 
 def test_every_figure_that_is_logged_is_listed(logged):

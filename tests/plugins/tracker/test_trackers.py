@@ -5,10 +5,17 @@ import math
 
 import pytest
 
-from plugins.tracker.figures import attempt_figures, case_figures, flat, means, numbers, parameters
+from plugins.tracker.figures import (
+    attempt_figures,
+    case_figures,
+    case_parameters,
+    flat,
+    means,
+    numbers,
+    parameters,
+)  # fmt: skip
 from plugins.tracker.jsonl import Jsonl
 from plugins.tracker.none import NoTracker
-from sgcad_core.case.records import Generation, Query
 
 RESULT = {
     "case": "c1",
@@ -23,7 +30,7 @@ RESULT = {
 }
 METRICS = {"thresholds": {"theta": 1.0}, "paper": {"ice": 0.0, "level": "high"}, "exact": {"time_to_collision_s": None}}
 PARAMS = {"seed": 42, "road_writer": {"name": "template"}, "validators": [{"name": "topology"}]}
-GENERATION = Generation(text="{}", seconds=1.5, prompt_tokens=11, model_calls=2, grounding={"$.legs": 0.75})
+GENERATION = {"seconds": 1.5, "prompt_tokens": 11, "model_calls": 2, "grounding": {"$.legs": 0.75}}
 
 
 @pytest.fixture
@@ -51,18 +58,22 @@ def test_case_figures_are_flat_and_leave_constants_out(case_dir):
     figures = case_figures(case_dir, RESULT)
     assert figures["collision_realised"] == figures["generated"] == 1.0
     assert figures["failed"] == 0.0
-    assert figures["paper_ice"] == 0.0
-    assert figures["attempts_road"] == 2.0
-    assert figures["network_mean_lanes"] == 1.5
-    assert figures["grounding_road.$.legs"] == 0.75
+    assert figures["paper/ice"] == 0.0
+    assert figures["attempts/road"] == 2.0
+    assert figures["network/mean_lanes"] == 1.5
+    assert figures["grounding/road.$.legs"] == 0.75
+    assert figures["seconds/total"] == 1.5
     assert not any("theta" in name or "segments" in name for name in figures)
 
 
 def test_attempts_are_steps(case_dir):
+    about = {"stage": "road", "number": 2, "seconds": 1.0, "generation": GENERATION}
+    (case_dir / "attempts" / "road-02" / "attempt.json").write_text(json.dumps(about))
     assert list(attempt_figures(case_dir)) == [
-        (1, {"road_findings": 2.0, "road_seconds": 0.5}),
-        (2, {"road_findings": 0.0, "road_seconds": 1.0}),
-    ]
+        (1, {"attempt/road_findings": 2.0, "attempt/road_seconds": 0.5}),
+        (2, {"attempt/road_findings": 0.0, "attempt/road_seconds": 1.0, "attempt/road_prompt_tokens": 11.0,
+             "attempt/road_model_calls": 2.0}),
+    ]  # fmt: skip
 
 
 def test_a_failed_case_without_network_has_figures(tmp_path):
@@ -77,15 +88,19 @@ def test_no_tracker_leaves_nothing(case_dir):
     assert sorted(case_dir.parent.parent.rglob("*")) == before
 
 
-def test_jsonl_keeps_a_line_a_case_and_a_line_a_call(case_dir, tmp_path):
+def test_jsonl_keeps_a_line_a_case_and_a_line_a_model_answer(case_dir, tmp_path):
+    about = {"stage": "road", "number": 2, "generation": GENERATION}
+    (case_dir / "attempts" / "road-02" / "attempt.json").write_text(json.dumps(about))
+    (case_dir / "attempts" / "road-02" / "prompt.txt").write_text("draw")
     tracker = Jsonl(folder=tmp_path / "log")
     tracker.log_case("kit", PARAMS, case_dir, RESULT)
+    (calls,) = [json.loads(line) for line in (tmp_path / "log" / "calls.jsonl").read_text().splitlines()]
+    assert (calls["case"], calls["number"], calls["prompt"]) == ("c1", 2, "draw")
+    assert calls["generation"]["grounding"] == {"$.legs": 0.75}
     tracker.log_case("kit", PARAMS, case_dir, RESULT | {"status": "refused"})
-    tracker.log_generation("kit", "c1", Query(task="draw"), GENERATION)
     lines = [json.loads(line) for line in (tmp_path / "log" / "cases.jsonl").read_text().splitlines()]
     assert [line["result"]["status"] for line in lines] == ["generated", "refused"]
-    assert lines[0]["figures"]["paper_ice"] == 0.0
-    assert json.loads((tmp_path / "log" / "calls.jsonl").read_text())["query"]["task"] == "draw"
+    assert lines[0]["figures"]["paper/ice"] == 0.0
 
 
 def test_jsonl_lies_beside_the_configs_by_default(case_dir):
@@ -108,9 +123,17 @@ def test_parameters_are_called_as_the_yaml_calls_them():
 
 
 def test_means_are_over_the_cases_that_have_the_figure_and_keep_its_name():
-    generated = {"generated": 1.0, "refused": 0.0, "paper_ice": 0.5, "attempt_road_findings": 3.0}
-    found = means([generated, generated | {"paper_ice": 1.0}, {"generated": 0.0, "refused": 1.0}])
-    assert found["paper_ice"] == 0.75
+    generated = {"generated": 1.0, "refused": 0.0, "paper/ice": 0.5, "attempt/road_findings": 3.0}
+    found = means([generated, generated | {"paper/ice": 1.0}, {"generated": 0.0, "refused": 1.0}])
+    assert found["paper/ice"] == 0.75
     assert found["generated"] == pytest.approx(2 / 3)
     assert (found["cases"], found["cases_generated"], found["cases_refused"], found["cases_failed"]) == (3, 2, 1, 0)
-    assert "attempt_road_findings" not in found
+    assert "attempt/road_findings" not in found
+
+
+def test_a_case_has_only_the_parameters_that_tell_arms_apart():
+    params = {"seed": 42, "max_attempts": 10, "decoder": {"name": "cad", "alpha": 0.7}, "validators": ["topology"]}
+    params |= {"backbone": {"name": "hf_vision", "model": "m", "dtype": "native"}, "simulator": {"name": "libsumo"}}
+    assert case_parameters(parameters(params)) == {
+        "seed": "42", "decoder": "cad", "decoder.alpha": "0.7", "backbone": "hf_vision", "backbone.model": "m",
+    }  # fmt: skip
