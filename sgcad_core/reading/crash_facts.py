@@ -14,16 +14,18 @@ from sgcad_core.reading.actors.people_objects import OtherFacts, WalkDirection, 
 from sgcad_core.reading.actors.vehicles import VehicleDescription
 from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.contacts.near_crash import NearCrashFacts
+from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.inference.gaps import Gap
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold, end_of
-from sgcad_core.reading.motion.maneuvers import meant_turn, started_from_stop
+from sgcad_core.reading.motion.maneuvers import meant_turn
 from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
 from sgcad_core.reading.text.conditions import Conditions
-from sgcad_core.records.course import Courses, ImpactTold
+from sgcad_core.records.course import Courses, CourseTold, ImpactTold
 from sgcad_core.records.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
+from sgcad_core.records.timeline import Act, of_actor, starts_from_rest
 
 FROM_STOP_MPH = 12
-"""The speed of a vehicle that has just started from a stop, where none is told: after 7 m at 2 m/s^2."""
+"""More than a vehicle that has just started from a stop can drive: after 7 m at 2 m/s^2."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class VehicleFacts:
     lane: int | None = None
     """1 = at the right curb; where counted from the left -1 = the leftmost."""
     lane_word: str | None = None
-    """left, right, middle, left_turn, right_turn."""
+    """left, right, middle, left_turn, right_turn, center_turn (a two-way left-turn lane)."""
     speed_mph: int | None = None
     trailer: bool = False
     origin: Access | None = None
@@ -82,6 +84,8 @@ class CrashFacts:
     """Contacts behind the first one with things, and of the same pair once more, in order."""
     near_crash: NearCrashFacts | None = None
     """Set for a near crash: the first of `contacts` is the one that was avoided."""
+    untouched: Untouched | None = None
+    """What happens to a lone vehicle that touches nothing: `contacts` is then empty."""
     oriented: bool = False
     """Whether any heading is told: if not, all headings are right only relative to one another."""
     unnumbered: bool = False
@@ -91,19 +95,41 @@ class CrashFacts:
     gap: Gap | None = None
     """Why no crash can be drawn from the text, if so."""
 
+    @property
+    def driven(self) -> Courses:
+        """The courses as they are planned: with the start from rest of the vehicles that are read so."""
+        starts = {v.id for v in self.vehicles if v.from_stop}
+        told = {who: replace(self.courses.get(who, CourseTold()), from_rest=True) for who in starts}
+        return {**self.courses, **told}
+
     def vehicle(self, id: str) -> VehicleFacts | None:
         """The vehicle of that number."""
         return next((v for v in self.vehicles if v.id == id), None)
+
+    def first_contact(self, id: str) -> ContactFacts | None:
+        """The first contact of an actor."""
+        return next((c for c in self.contacts if id in (c.striker, c.struck)), None)
+
+    def first_met(self, id: str) -> VehicleFacts | None:
+        """The vehicle that an actor touches first; None where it touches nothing, or something else."""
+        first = self.first_contact(id)
+        return self.vehicle(first.struck if first.striker == id else first.striker) if first else None
 
 
 _SURFACE: dict[Weather | None, Surface] = {"rain": "wet", "snow": "snow", "sleet": "ice"}
 """Surface where only the weather is told."""
 
 
-def _vehicle(v: VehicleDescription, motion: VehicleMotion, inferred: CrashInferred) -> VehicleFacts:
+_FROM_REST: tuple[Maneuver, ...] = ("straight", "merge", "turn_left", "turn_right", "u_turn")
+"""Maneuvers that a vehicle may begin at rest."""
+
+
+def _vehicle(
+    v: VehicleDescription, motion: VehicleMotion, inferred: CrashInferred, acts: tuple[Act, ...]
+) -> VehicleFacts:
     """One vehicle's facts put together."""
     meant = meant_turn(motion)
-    from_stop = started_from_stop(motion, inferred.maneuvers[v.id])
+    from_stop = inferred.maneuvers[v.id] in _FROM_REST and starts_from_rest(of_actor(acts, v.id))
     over = from_stop and inferred.speeds.get(v.id, 0) > FROM_STOP_MPH and _told_before_stop(motion, inferred, v.id)
     return VehicleFacts(
         id=v.id, kind=v.kind, year=v.year, make=v.make, model=v.model,
@@ -169,9 +195,9 @@ def _subject_first(
     return vehicles, (mine, *(c for c in contacts if c is not mine))
 
 
-def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions) -> CrashFacts:
+def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions, timeline: tuple[Act, ...] = ()) -> CrashFacts:
     """The crash that was read (`crash_told`) and what follows from it. A text that names no vehicle gives none."""
-    vehicles = tuple(_vehicle(v, crash.motions[v.id], inferred) for v in crash.roster.vehicles)
+    vehicles = tuple(_vehicle(v, crash.motions[v.id], inferred, timeline) for v in crash.roster.vehicles)
     beside = others(crash.contact_mentions, crash.roster.ids, sum(v.beside for v in crash.roster.vehicles))
     contacts = tuple(inferred.contacts) or _without_vehicle(crash, inferred, beside)
     if crash.roster.counted:
@@ -186,6 +212,7 @@ def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions) -> Cras
         near_crash=_near(crash) if contacts else None,
         courses=crash.course.courses,
         impacts=tuple(read.impact for read in crash.impacts),
+        untouched=crash.untouched,
         oriented=bool(inferred.stated),
         unnumbered=crash.roster.counted,
     )

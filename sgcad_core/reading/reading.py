@@ -17,16 +17,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from sgcad_core.reading.actors.part_numbers import counts_itself
 from sgcad_core.reading.actors.people_objects import walk_of
-from sgcad_core.reading.actors.references import has_actor_numbers
 from sgcad_core.reading.actors.rename_ids import renamed
 from sgcad_core.reading.actors.vehicles import Roster, read_roster
-from sgcad_core.reading.contacts.contact_records import ContactMention
+from sgcad_core.reading.contacts.contact_records import AREAS, ContactMention
 from sgcad_core.reading.contacts.contacts import contact_mentions
 from sgcad_core.reading.contacts.crash_course import CoursesRead, acting_segments, courses_told
 from sgcad_core.reading.contacts.crash_roles import role_facts
-from sgcad_core.reading.contacts.later_impacts import later_impacts, with_resting_contacts
+from sgcad_core.reading.contacts.later_impacts import later_impacts, things_struck, with_resting_contacts
 from sgcad_core.reading.contacts.near_crash import before_evasion, near_miss, near_misses, tells_hit
+from sgcad_core.reading.contacts.untouched_events import untouched_event
 from sgcad_core.reading.crash_facts import CrashFacts, crash_of
 from sgcad_core.reading.inference.gaps import (
     Gap,
@@ -34,6 +35,7 @@ from sgcad_core.reading.inference.gaps import (
     motion_untold,
     other_language,
     several_reports,
+    too_thin,
     without_actors,
 )
 from sgcad_core.reading.inference.infer_facts import infer_crash
@@ -50,6 +52,7 @@ from sgcad_core.reading.provenance.crash_provenance import (
     crash_provenance,
 )
 from sgcad_core.reading.provenance.road_provenance import road_provenance
+from sgcad_core.reading.provenance.timeline import timeline_of
 from sgcad_core.reading.roads.road_facts import RoadFacts, roads_of
 from sgcad_core.reading.text.conditions import Conditions, conditions
 from sgcad_core.reading.text.normalise import Sentence, normalised, split_sentences
@@ -57,6 +60,7 @@ from sgcad_core.reading.text.report_styles import account, tells_study
 from sgcad_core.reading.text.traced_text import TracedText
 from sgcad_core.records.edits import Edit
 from sgcad_core.records.facts import Fact
+from sgcad_core.records.timeline import Act
 
 
 @dataclass(frozen=True)
@@ -78,12 +82,18 @@ class Reading:
     """All of that as records with their sentences: stated, inferred, or a default of the reading itself."""
     edits: tuple[Edit, ...] = ()
     """What people said otherwise; all of the above then follows them (`sgcad_core.reading.reading_with_edits`)."""
+    timeline: tuple[Act, ...] = ()
+    """States and acts of all road users in the order of the crash; maneuvers and starts from a stop follow from it."""
     called: Mapping[str, str] = field(default_factory=dict)
     """Of a text without vehicle numbers: number in a sentence -> id of that person, cyclist or animal."""
 
     def actor(self, name: str) -> str:
         """The id of the actor that a sentence names so."""
         return self.called.get(name, name)
+
+    def named_in(self, sentence: Sentence) -> set[str]:
+        """The ids of the actors that a sentence names by number."""
+        return {self.actor(m[0]) for m in rule("common.vehicle").finditer(sentence.text)}
 
     def text_of(self, sentence: Sentence) -> str:
         """A sentence as it was understood, with every actor's id in it."""
@@ -95,7 +105,7 @@ def read(narrative: str | TracedText) -> Reading:
     text = TracedText.of(narrative) if isinstance(narrative, str) else narrative
     even = normalise(text)
     found = sentences(even)
-    named = mentions(found, not has_actor_numbers(even.text))
+    named = mentions(found, counts_itself(even.text))
     return infer(text.text, found, named, events(found, named, clauses(named), of_study=tells_study(even.text)))
 
 
@@ -153,8 +163,14 @@ def events(
     found: tuple[Sentence, ...], named: Mentions, segments: tuple[Segment, ...], *, of_study: bool = False
 ) -> Events:
     """Motions, contacts (of a near crash those that did not come about), conditions."""
-    roster, struck = named.roster, contact_mentions(named.statements, named.roster)
+    roster, cues = named.roster, acting_segments(named.statements, named.roster)
+    struck = contact_mentions(named.statements, roster) or things_struck(named.statements, cues, roster)
+    event = None if of_study else untouched_event(named.statements, roster, struck)
     near = None if struck else near_miss(named.statements, segments, roster, of_study=of_study)
+    if (
+        event and near
+    ):  # a vehicle that avoids an animal and rolls over has a crash; one that just leaves the road, none
+        event, near = (None, near) if event.kind == "departure" else (event, None)
     hits = near.contact_mentions if near else struck
     subject = roster.ids[0] if roster.ids else None
     met = (
@@ -163,12 +179,13 @@ def events(
         if subject in (b.actor, b.other) and {b.actor, b.other} <= set(roster.ids) and not b.summary
     )
     moved = read_motions(named.statements, before_evasion(segments) if of_study else segments, roster, next(met, None))
-    cues = acting_segments(named.statements, roster)
-    course = CoursesRead() if near else courses_told(named.statements, cues, roster, _coded_loss(moved))
-    impacts = () if near else with_resting_contacts(later_impacts(named.statements, cues, roster, struck), course)
+    course = CoursesRead() if near else courses_told(named.statements, cues, roster, _coded_loss(moved), event)
+    pairs = {frozenset((b.actor, b.other)) for b in struck if b.other in roster.ids}
+    later = () if near else later_impacts(named.statements, cues, roster, struck)
+    impacts = () if near else with_resting_contacts(later, course, len(pairs))
     walks = {b.other: walk_of(b.other, named.statements) for b in hits if b.other not in roster.ids}
     missed = frozenset(frozenset((b.actor, b.other)) for b in near_misses(named.statements, roster))
-    crash_told = CrashTold(roster, moved, hits, course, impacts, near, walks, missed)
+    crash_told = CrashTold(roster, moved, hits, course, impacts, near, walks, missed, event)
     return Events(crash_told, conditions(found), signal_states(segments))
 
 
@@ -180,9 +197,11 @@ def _coded_loss(moved: Mapping[str, VehicleMotion]) -> dict[str, ManeuverCue]:
 def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Events) -> Reading:
     """What follows from what is told."""
     inferred = infer_crash(seen.crash_told)
+    builder = FactBuilder(found)
+    acts = timeline_of(builder, seen.crash_told, inferred)
     called = {old: new for old, new in named.roster.called.items() if old != new}
-    roads = roads_of(named.statements, named.roster, crash_of(seen.crash_told, inferred, seen.sky))
-    builder, as_read = FactBuilder(found), StageResults(seen.crash_told, inferred, roads.crash, dict(seen.sky.sources))
+    roads = roads_of(named.statements, named.roster, crash_of(seen.crash_told, inferred, seen.sky, acts))
+    as_read = StageResults(seen.crash_told, inferred, roads.crash, dict(seen.sky.sources))
     lights = [builder.stated(f"vehicles.{v}.signal", told.state, told.source) for v, told in seen.signals.items()]
     course = course_provenance(builder, seen.crash_told)
     roles = role_facts(builder, named.statements, roads.crash)
@@ -191,7 +210,8 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     roads, facts = renamed(roads, called), tuple(renamed(fact, called) for fact in facts)
     crash = replace(roads.crash, gap=_gap(narrative, found, named, roads.crash))
     lost = bool(rule("meeting.lost").search(narrative))
-    return Reading(narrative, found, crash, replace(roads, crash=crash), states, lost, facts, called=called)
+    acts = tuple(renamed(act, called) for act in acts)
+    return Reading(narrative, found, crash, replace(roads, crash=crash), states, lost, facts, (), acts, called)
 
 
 def _gap(narrative: str, found: tuple[Sentence, ...], named: Mentions, crash: CrashFacts) -> Gap | None:
@@ -199,12 +219,23 @@ def _gap(narrative: str, found: tuple[Sentence, ...], named: Mentions, crash: Cr
     gap = other_language(account(TracedText.of(narrative)).text) or several_reports(narrative)
     if gap or not crash.vehicles:
         return gap or without_actors(narrative, found)
-    if crash.near_crash or (tells_study(narrative) and not any(map(tells_hit, named.statements))):
+    if crash.near_crash or crash.untouched or (tells_study(narrative) and not any(map(tells_hit, named.statements))):
         return None
     alone = len(crash.vehicles) == 1 and not crash.contacts
     subject = crash.vehicles[0].id
     mine = (c.stated and subject in (c.striker, c.struck) for c in crash.contacts)
     if named.roster.counted or alone:
         return contact_untold(narrative, mine)
-    told = any(c.stated for c in crash.contacts) or any(v.heading_stated for v in crash.vehicles)
-    return None if told else motion_untold(narrative)
+    if not any(c.stated for c in crash.contacts) and not crash.oriented:
+        return motion_untold(narrative)
+    return too_thin() if _tells_only_the_pair(crash, found) else None
+
+
+def _tells_only_the_pair(crash: CrashFacts, found: tuple[Sentence, ...]) -> bool:
+    """Whether of a crash of two vehicles sides, directions, maneuvers and roads are all left open."""
+    first = next(iter(crash.contacts), None)
+    if first is None or crash.oriented or crash.vehicle(first.struck) is None:
+        return False
+    open_sides = len(first.striker_may) == len(first.struck_may) == len(AREAS)
+    moved = any(v.maneuver_stated for v in crash.vehicles)
+    return open_sides and not moved and not any(rule("roles.road").search(s.text) for s in found)

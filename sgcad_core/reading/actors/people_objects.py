@@ -89,7 +89,7 @@ def others(
             words.append(mention.other)
     found: list[OtherFacts] = []
     for word in words:
-        letter, kind = _kind(word)
+        letter, kind = kind_of_word(word)
         number = sum(f.id.startswith(letter) for f in found) + 1 + (parked if letter == "O" else 0)
         found.append(OtherFacts(f"{letter}{number}", kind, word))
     return tuple(found)
@@ -97,10 +97,10 @@ def others(
 
 def is_person(word: str) -> bool:
     """Whether an actor without a number is a road user, not an object."""
-    return not actor_kind(_kind(word)[1]).thing
+    return not actor_kind(kind_of_word(word)[1]).thing
 
 
-def _kind(word: str) -> tuple[str, ActorKind]:
+def kind_of_word(word: str) -> tuple[str, ActorKind]:
     for road_user in of_role("road_user"):
         if road_user.search(word):
             return road_user.yields["letter"], road_user.yields["kind"]

@@ -9,6 +9,7 @@ gives their own letters. Knows what phrases mean, no motion.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from dataclasses import dataclass
 
 from sgcad_core.reading.actors.makes import BODY_WORDS, is_ridden, no_vehicle, on_foot
@@ -34,6 +35,8 @@ def number_actors(text: TracedText) -> TracedText:
     if has_actor_numbers(text.text):
         return text
     automated = any(m["automated"] for m in _PHRASE.finditer(text.text))
+    if not automated and (name := _company(text.text)):
+        text, automated = text.sub(rule("references.of_company").given(name=re.escape(name)), rf"{name} AV"), True
     for name in _companies(text.text):
         text = text.sub(rule("references.short_name").given(name=re.escape(name)), rf"\1 {name} AV")
     cast = NamedActors([Actor(1, "vehicle", set(), subject=True)] if automated else [], automated)
@@ -61,6 +64,14 @@ def _companies(text: str) -> list[str]:
     """Company names by which a report calls the automated vehicle: "the Acme AV"."""
     called = (rule("references.branded").match(m["automated"]) for m in _PHRASE.finditer(text) if m["automated"])
     return list(dict.fromkeys(name.group().strip() for name in called if name))
+
+
+def _company(text: str) -> str | None:
+    """The company whose vehicle a report of automated driving is about: the one named most, first of all."""
+    if not rule("references.drives_itself").search(text):
+        return None
+    counts = Counter(m["name"] for m in rule("references.company_vehicle").finditer(text))
+    return max(counts, key=lambda name: counts[name]) if counts else None
 
 
 @dataclass

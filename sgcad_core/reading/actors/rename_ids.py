@@ -9,6 +9,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 from sgcad_core.records.facts import Fact
+from sgcad_core.records.timeline import Act
 
 T = TypeVar("T")
 _LONGEST_NAME = 60
@@ -27,6 +28,8 @@ def _renamed(value: Any, called: dict[str, str]) -> Any:
         return ".".join(called.get(part, part) for part in value.split(".")) if len(value) < _LONGEST_NAME else value
     if isinstance(value, Fact):
         return value.model_copy(update={n: _renamed(getattr(value, n), called) for n in ("field", "value")})
+    if isinstance(value, Act):
+        return value.model_copy(update={n: _renamed(getattr(value, n), called) for n in ("actor", "other")})
     if is_dataclass(value) and not isinstance(value, type):
         return replace(value, **{f.name: _renamed(getattr(value, f.name), called) for f in fields(value) if f.init})
     if isinstance(value, tuple):

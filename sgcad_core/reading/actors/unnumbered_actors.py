@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from itertools import count
 
-from sgcad_core.reading.actors.makes import BODY_WORDS, is_large, kind_of, no_vehicle
+from sgcad_core.reading.actors.makes import BODY_WORDS, MAKES, is_large, kind_of, no_vehicle
 from sgcad_core.reading.language import rule, values
 
 _STATES: dict[str, str] = values("state")
@@ -14,6 +15,7 @@ _PART_OF = {"which was ahead": "ahead", "which was behind": "behind", "which was
 PARTS: dict[str, str] = values("beside_part") | {w: _PART_OF[s] for w, s in _STATES.items() if s in _PART_OF}
 """Words that tell where beside the subject a vehicle is: "the lead car" is ahead of it."""
 _USERS: dict[str, str] = values("road_user")
+_STANDING = ("stopped", "parked")
 _MOST = 8
 """Actors of a report without numbers; further ones stay as they are written."""
 _ANY = ("vehicle", "motorist")
@@ -100,13 +102,14 @@ class Phrase:
     @property
     def stands(self) -> bool:
         """Whether the words before or behind say that it is parked or stopped."""
-        told = any(_STATES.get(m, "").endswith(("stopped", "parked")) for m in self.modifiers)
+        told = any(_STATES.get(m, "").endswith(_STANDING) for m in (*self.modifiers, *self.head.split()))
         return told or bool(rule("references.stands").match(self.match.string, self.match.end()))
 
     @property
     def clauses(self) -> str:
         """What its modifiers tell of its motion, as clauses behind it, closed where the sentence leaves it."""
         told = [_STATES[m] for m in self.modifiers if _STATES.get(m)]
+        told += [_STATES[m] for m in self.head.split()[:-1] if _STATES.get(m, "").endswith(_STANDING)]
         closed = rule("references.goes_on").match(self.match.string, self.match.end())
         return f", {told[0]}{',' if closed else ''}" if told else ""
 
@@ -118,6 +121,8 @@ class NamedActors:
     actors: list[Actor] = field(default_factory=list)
     automated: bool = False
     """Whether the subject has words of its own, so that no other phrase means it as long as another actor fits."""
+    taken: frozenset[int] = frozenset()
+    """Numbers that the report gives."""
 
     def subject(self) -> Actor | None:
         """The report's own vehicle, once it is named."""
@@ -127,7 +132,8 @@ class NamedActors:
         """Adds an actor for a phrase; None where the most that are numbered are there."""
         if len(self.actors) == _MOST:
             return None
-        actor = Actor(len(self.actors) + 1, phrase.kind, {phrase.head}, phrase.order or 1, subject, announced)
+        number = next(n for n in count(1) if n not in self.taken and all(a.number != n for a in self.actors))
+        actor = Actor(number, phrase.kind, {phrase.head}, phrase.order or 1, subject, announced)
         self.actors.append(actor)
         return actor
 
@@ -158,7 +164,7 @@ class NamedActors:
 
     def _own(self, phrase: Phrase) -> bool:
         """Whether "the truck" is the automated vehicle: a large one, where no other vehicle was named."""
-        large = is_large(phrase.kind) and not phrase.match["make"] and not _beside(phrase)
+        large = is_large(phrase.kind) and not phrase.match["make"] and not phrase.modifiers and not _beside(phrase)
         return self.automated and large and all(a.subject or no_vehicle(a.kind) for a in self.actors)
 
     def open(self, phrase: Phrase) -> Actor | None:
@@ -168,12 +174,21 @@ class NamedActors:
 
 def _fits(actor: Actor, phrase: Phrase) -> bool:
     """Whether the words of a phrase may mean an actor."""
-    if phrase.head in actor.heads or phrase.kind == actor.kind:
+    if phrase.head in actor.heads:
+        return True
+    if (makes := _makes(phrase.names)) and (known := _makes(actor.names)) and not makes & known:
+        return False
+    if phrase.kind == actor.kind:
         return True
     vehicle = not no_vehicle(actor.kind)
     if phrase.kind == "vehicle" or actor.kind == "vehicle":
         return vehicle and not no_vehicle(phrase.kind)
     return phrase.head == "truck" and actor.kind in ("truck", "pickup")
+
+
+def _makes(names: set[str]) -> set[str]:
+    """The makes among proper names."""
+    return {MAKES[name] for name in names if name in MAKES}
 
 
 def _may_be_subject(subject: Actor, phrase: Phrase) -> bool:

@@ -174,6 +174,8 @@ _LONGEST_ID = 3
 def _identity(vehicle: str, told: list[str], counted: bool) -> VehicleDescription:
     found = phrases.introductions if counted else phrases.descriptions
     described = tuple(Source(n, d) for n, text in enumerate(told) for d in found(text, vehicle))
+    if counted and not described:  # a number of the report's own, beside those that were given here
+        described = tuple(Source(n, d) for n, text in enumerate(told) for d in phrases.descriptions(text, vehicle))
     words = " ".join(source.words for source in described)
     if not counted and not rule("vehicles.make").search(words):
         described += tuple(Source(n, d) for n, text in enumerate(told) for d in phrases.named_before(text, vehicle))

@@ -6,9 +6,11 @@ Ids are those of the crash's others where the same object is among them. Knows f
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import islice
 
-from sgcad_core.kinds import RAMP, actor_kind, kind_of_letter
-from sgcad_core.reading.actors.people_objects import OtherFacts
+from sgcad_core.kinds import RAMP, actor_kind
+from sgcad_core.reading.actors.people_objects import OtherFacts, kind_of_word
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.layout.road_ways import Way, exits, turn_of, ways_of
 from sgcad_core.records.course import ImpactTold
@@ -23,51 +25,81 @@ _SIZE_M: dict[str, tuple[float, float]] = {
 }  # fmt: skip
 """Depth and width of things as a car meets them, metres; others are posts."""
 _USUAL_M = (0.4, 0.4)
+_LONG_M = 1.5
+"""Width from which a thing stands along the road."""
 
 
 def with_roadside(
     actors: Sequence[Actor], contacts: Sequence[Contact], facts: CrashFacts, most: tuple[int, int]
 ) -> tuple[tuple[Actor, ...], tuple[Contact, ...]]:
-    """The actors and contacts with what is struck behind the first contact; `most`: actors and contacts in all."""
-    joined, struck = list(actors), list(contacts)
-    struck += list(_again(facts, contacts))[: most[1] - len(struck)]
+    """The actors and contacts with things and people that are struck besides, and second contacts of the first pair.
+
+    Contacts stand in told order. `most`: actors and contacts in all.
+    """
+    joined, told = list(actors), _Told(len(contacts))
+    for impact in islice(_again(facts, contacts), 1):
+        told.add(impact.after, _once_more(impact, contacts[0]))
     for vehicle, other, impact in _struck(facts, {a.id for a in actors}):
         driver = next((a for a in actors if a.id == vehicle), None)
-        if driver is None or len(joined) >= most[0] or len(struck) >= most[1]:
+        if driver is None or len(joined) >= most[0] or len(told.further) + len(contacts) >= most[1]:
             continue
-        joined.append(_standing(other, driver))
-        struck.append(Contact(
+        joined.append(_standing(other, driver, endwise=_is_met_endwise(impact, contacts)))
+        told.add(impact.after, Contact(
             striker=vehicle, struck=other.id, striker_area=impact.actor_area or "front",
             struck_area="front" if actor_kind(other.kind).thing else "left",
         ))  # fmt: skip
-    return tuple(joined), tuple(struck)
+    return tuple(joined), tuple(told.merged(contacts))
 
 
-def _again(facts: CrashFacts, contacts: Sequence[Contact]) -> Iterator[Contact]:
-    """The pair that touched first touches a second time, as told."""
-    for impact in facts.impacts:
-        first = contacts[0] if contacts else None
-        if first is None or {impact.actor, impact.other} != {first.striker, first.struck}:
-            continue
-        sides = (impact.actor_area, impact.other_area) if impact.actor == first.striker else (
-            impact.other_area, impact.actor_area)  # fmt: skip
-        yield Contact(
-            striker=first.striker, struck=first.struck,
-            striker_area=sides[0] or first.striker_area, struck_area=sides[1] or first.struck_area,
-        )  # fmt: skip
-        return
+@dataclass
+class _Told:
+    """Further contacts, each with the number of contacts of vehicles that are told before it."""
+
+    pairs: int
+    further: list[tuple[int, Contact]] = field(default_factory=list)
+
+    def add(self, after: int, contact: Contact) -> None:
+        """Take a contact; in order among those told behind the same one."""
+        self.further.append((min(after, self.pairs), contact))
+
+    def merged(self, contacts: Sequence[Contact]) -> Iterator[Contact]:
+        """All contacts in told order."""
+        for number in range(len(contacts) + 1):
+            yield from (contact for after, contact in self.further if after == number)
+            yield from contacts[number : number + 1]
+
+
+def _again(facts: CrashFacts, contacts: Sequence[Contact]) -> Iterator[ImpactTold]:
+    """Impacts of the pair that touched first."""
+    pair = {contacts[0].striker, contacts[0].struck} if contacts else set()
+    return (impact for impact in facts.impacts if {impact.actor, impact.other} == pair)
+
+
+def _once_more(impact: ImpactTold, first: Contact) -> Contact:
+    """The same two touch a second time, as told."""
+    own = impact.actor == first.striker
+    sides = (impact.actor_area, impact.other_area) if own else (impact.other_area, impact.actor_area)
+    return Contact(
+        striker=first.striker, struck=first.struck,
+        striker_area=sides[0] or first.striker_area, struck_area=sides[1] or first.struck_area,
+    )  # fmt: skip
 
 
 def _struck(facts: CrashFacts, taken: set[str]) -> Iterator[tuple[str, OtherFacts, ImpactTold]]:
     """(vehicle, what it strikes, as told), in order; the first contact of a lone vehicle is none of these."""
-    taken = set(taken)
-    alone = len(facts.vehicles) == 1
+    taken, pairs = set(taken), {v.id for v in facts.vehicles}
     for number, impact in enumerate(facts.impacts):
-        if impact.before or impact.other in {v.id for v in facts.vehicles} or (alone and number == 0):
+        if impact.other in pairs or (number == 0 and impact.other == _first_thing(facts)):
             continue
         other = _known(facts, impact.other, taken)
         taken.add(other.id)
         yield impact.actor, other, impact
+
+
+def _first_thing(facts: CrashFacts) -> str | None:
+    """The word of the thing that is met first of all: the first impact may be that one."""
+    struck = facts.contacts[0].struck if facts.contacts else None
+    return next((o.word.split()[-1] for o in facts.others if o.id == struck), None)
 
 
 def _known(facts: CrashFacts, word: str, taken: set[str]) -> OtherFacts:
@@ -75,13 +107,19 @@ def _known(facts: CrashFacts, word: str, taken: set[str]) -> OtherFacts:
     for other in facts.others:
         if other.id not in taken and other.word.split()[-1] == word:
             return other
-    used = taken | {o.id for o in facts.others}
-    free = next(f"O{n}" for n in range(1, 99) if f"O{n}" not in used)
-    return OtherFacts(free, kind_of_letter("O"), word)
+    used, (letter, kind) = taken | {o.id for o in facts.others}, kind_of_word(word)
+    free = next(f"{letter}{n}" for n in range(1, 99) if f"{letter}{n}" not in used)
+    return OtherFacts(free, kind, word)
 
 
-def _standing(other: OtherFacts, driver: Actor) -> Actor:
+def _is_met_endwise(impact: ImpactTold, contacts: Sequence[Contact]) -> bool:
+    """Whether a long thing is met at its end: by the front of a vehicle that drives on to another one."""
+    return impact.before and bool(contacts) and impact.actor_area not in ("left", "right")
+
+
+def _standing(other: OtherFacts, driver: Actor, *, endwise: bool = False) -> Actor:
     size = _SIZE_M.get(other.word.split()[-1], _USUAL_M) if actor_kind(other.kind).thing else (None, None)
+    size = size[::-1] if endwise and size[1] and size[1] > _LONG_M else size
     kind: ActorKind = other.kind
     return Actor(
         id=other.id, kind=kind, road=driver.road, direction=driver.direction, maneuver="stopped",

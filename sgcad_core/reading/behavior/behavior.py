@@ -13,7 +13,7 @@ from sgcad_core.reading.behavior.exit_assignment import Placed, assign, square_r
 from sgcad_core.reading.behavior.lane_choice import lane_of
 from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.contacts.near_crash import NearCrashFacts
-from sgcad_core.reading.crash_facts import FROM_STOP_MPH, CrashFacts, VehicleFacts
+from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.layout.road_ways import Way
 from sgcad_core.records.specs import (  # fmt: skip
     Actor,
@@ -87,18 +87,20 @@ def _actor(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> Act
 
 
 def _maneuver(v: VehicleFacts, way: Way) -> Maneuver:
-    """As told; a lane change from a ramp is a merge; a vehicle parked along an aisle with stalls is stopped in it."""
+    """As told; a lane change from a ramp is a merge; one to the left of the only lane crosses the middle of the road; a
+    vehicle parked along an aisle with stalls is stopped in it."""
     if way.road.kind == RAMP and v.maneuver in _SHIFTS:
         return "merge"
+    two_way = way.road.lanes_forward and way.road.lanes_backward
+    if v.maneuver == "lane_change_left" and way.lanes == 1 and two_way and way.road.median in ("none", "painted"):
+        return "crossing_centerline"
     along = is_aisle(way.road) and v.heading_stated and not square_rad(v, way)
     return "stopped" if along and v.maneuver == "parked" else v.maneuver
 
 
 def _speed_mph(v: VehicleFacts) -> int | None:
-    """As told; slow for a vehicle that starts from a stop; else None, the planner's choice."""
-    if v.standing:
-        return None
-    return v.speed_mph or (FROM_STOP_MPH if v.from_stop else None)
+    """As told of a vehicle that moves; else None, the planner's choice."""
+    return None if v.standing else v.speed_mph
 
 
 def _length(v: VehicleFacts) -> float | None:

@@ -119,7 +119,7 @@ class _Assignment:
     def _exit(self, v: VehicleFacts, way: Way) -> tuple[Way | None, float]:
         """The way taken behind this one and how ill it fits the maneuver."""
         ways = exits(way, self.ways)
-        wanted = TURN_RAD.get(v.maneuver, 0.0)
+        wanted = TURN_RAD.get(_meant(v), 0.0)
         if v.maneuver == "u_turn" or (v.standing and not ways) or self._backs_up(v, way):
             return None, 0.0
         fitting = [(self._exit_misfit(v, way, w, wanted), w) for w in ways]
@@ -180,6 +180,12 @@ class _Assignment:
             if partner:
                 cost += self._together(v, partner, option.placed.way, placed[name].way)
         return cost
+
+
+def _meant(v: VehicleFacts) -> Maneuver:
+    """The maneuver, or the turn for which one that stands in a turn lane waits."""
+    waits: dict[str, Maneuver] = {"left_turn": "turn_left", "right_turn": "turn_right"}
+    return waits.get(v.lane_word or "", v.maneuver) if v.maneuver == "stopped" and v.lane is None else v.maneuver
 
 
 def goes_tail_first(v: VehicleFacts) -> bool:

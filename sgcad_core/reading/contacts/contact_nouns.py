@@ -17,6 +17,8 @@ from sgcad_core.reading.text.area_phrases import Zone, area_if_told, area_of
 
 _PUSHES = (("v1", "v2", "a2"), ("v3", "v4", "a4"), ("v5", "v6", "a6"))
 """Groups of a pushed vehicle, the vehicle it is pushed into, and the area."""
+_BOTH_PARTS = rule("contact_words.both_parts")
+"""Both sides before the verb: "V1's front and V2's back made contact", told in the place of a verb."""
 _NOTHING = rule("contact_nouns.nothing")
 
 
@@ -24,16 +26,17 @@ def touches(statement: Statement, text: str) -> Iterator[ContactMention]:
     """Every contact that nouns tell in a sentence, in the order of their certainty."""
     pairs = (
         rule("contact_words.between"),
-        rule("contact_words.both_parts"),
+        _BOTH_PARTS,
         rule("contact_nouns.named"),
         rule("contact_nouns.caused"),
     )
     for m in (m for pattern in pairs for m in pattern.finditer(text)):
         if not _NOTHING.search(text[: m.start()]):
             front = "front" if rule("contact_nouns.head_on").match(text[m.end() :]) else None
-            yield _mention(
+            told = _mention(
                 statement, m["v1"], m["v2"], area_if_told(m["a1"]) or front, area_if_told(m["a2"]) or front, "between"
             )
+            yield replace(told, at=m.end()) if m.re == _BOTH_PARTS.pattern else told
     for m in rule("contact_nouns.between_thing").finditer(text):
         if not _NOTHING.search(text[: m.start()]):
             yield _mention(
@@ -52,6 +55,33 @@ def touches(statement: Statement, text: str) -> Iterator[ContactMention]:
     for m in rule("contact_nouns.took").finditer(text):
         area = area_if_told(m["a0"]) or area_if_told(m["a1"]) or area_of(m["how"])
         yield _mention(statement, m["v1"], m["v2"], area, area_if_told(m["a2"]), "took", True)
+
+
+def without_agent(statement: Statement, text: str, roster: Roster) -> Iterator[ContactMention]:
+    """ "Contact was made with the left side of V1", "... resulting in a collision": who else met is told before."""
+    for m in rule("contact_nouns.made_with").finditer(text):
+        area = area_if_told(m["a1"]) or area_if_told(m["own"])
+        other = m["v2"] or _before(statement, text[: m.start()], m["v1"], roster)
+        if other and not _NOTHING.search(text[: m.start()]):
+            if m["v2"] or m["v1"] == roster.ids[0]:
+                yield _mention(statement, m["v1"], other, area, area_if_told(m["a2"]), "made_with", True)
+            else:
+                yield _mention(statement, other, m["v1"], None, area, "made_with")
+    for m in rule("contact_nouns.resulted").finditer(text):
+        before = text[: m.start()] if MENTION.search(text[: m.start()]) else text
+        named = [v for v in MENTION.findall(before) if v in roster.ids]
+        actor = named[-1] if named else None
+        other = _before(statement, before, actor, roster) if actor else None
+        if actor and other and not _NOTHING.search(text[: m.start()]):
+            front, back = ("front", "back") if m["how"] else (None, None)
+            yield _mention(statement, actor, other, front, back, "resulted")
+
+
+def _before(statement: Statement, before: str, vehicle: str, roster: Roster) -> str | None:
+    """The other vehicle that the words before name last, else the one that the sentence before is about."""
+    named = [v for v in MENTION.findall(before) if v != vehicle and v in roster.ids]
+    earlier = statement.earlier if statement.earlier != vehicle else None
+    return named[-1] if named else roster.other(vehicle) or earlier
 
 
 def together(statement: Statement, text: str) -> Iterator[ContactMention]:
@@ -158,3 +188,24 @@ def unnamed_pair(statement: Statement, text: str, roster: Roster) -> list[Contac
             one, other, mine, theirs, statement.number, statement.role, words="bare_pair", mutual=True, noun=True
         )
     ]
+
+
+def mutual(statement: Statement, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> ContactMention:
+    """ "V1 and V2 collided front to front"."""
+    against = rule("contact_words.against").search(scope)
+    if against:
+        zones = {against["v1"]: area_if_told(against["a1"]), against["v2"]: area_if_told(against["a2"])}
+        first, second = zones.get(subjects[0]), zones.get(subjects[1])
+        return ContactMention(
+            subjects[0], subjects[1], first, second, statement.number, statement.role, False, verb.lower(), True
+        )
+    pair = rule("contact_words.paired").search(scope)
+    first, second = (area_if_told(pair["a1"]), area_if_told(pair["a2"])) if pair else (None, None)
+    if not pair:
+        both = rule("contact_words.with_its").search(scope) or rule("contact_words.of_both").search(before)
+        first = second = area_of(both["area"]) if both else None
+    if rule("contact.head_on").search(scope):
+        first = second = "front"
+    return ContactMention(
+        subjects[0], subjects[1], first, second, statement.number, statement.role, False, verb.lower(), True
+    )

@@ -12,6 +12,8 @@ from sgcad_core.reading.text.sentence_roles import HIT, Role
 from sgcad_core.records.specs import Area
 
 AREAS: tuple[Area, ...] = get_args(Area)
+GROUND = ("curb", "island", "median", "ditch", "ground")
+"""What a vehicle drives over: no body that stops it."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,8 @@ class ContactMention:
     """Statement by nouns ("the impact was between ..."), not by a verb of hitting."""
     summary: bool = False
     """The text says only which two collided, wherever it stands; it gives no order in time."""
+    at: int = 0
+    """Where the struck one stands in its sentence, in characters of the plain form (`area_phrases.plain`)."""
 
     def areas_of(self, vehicle: str) -> tuple[Zone | None, Zone | None]:
         """The area of one of both vehicles, then that of the other."""

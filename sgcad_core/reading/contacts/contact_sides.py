@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sgcad_core.reading.actors.people_objects import is_person
-from sgcad_core.reading.contacts.contact_records import AREAS, ContactFacts, ContactMention
+from sgcad_core.reading.contacts.contact_records import AREAS, GROUND, ContactFacts, ContactMention
 from sgcad_core.reading.inference.inference_state import (
     TURN_DEG,
     CrashInferred,
@@ -17,6 +17,7 @@ from sgcad_core.reading.inference.inference_state import (
 )
 from sgcad_core.reading.text.area_phrases import Zone
 from sgcad_core.reading.text.compass import OPPOSITE_HAND, between
+from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 from sgcad_core.records.specs import Area
 
 _SIDLING = ("lane_change_left", "lane_change_right", "merge", "overtaking")
@@ -31,6 +32,8 @@ def infer_contacts(crash: CrashTold, inferred: CrashInferred, pairs: list[Contac
         mention.other not in crash.roster.ids and is_person(mention.other) for mention in crash.contact_mentions
     ):
         return []  # an actor without a number was hit; no contact of the vehicles is told
+    if not pairs and any(_tells_thing(mention, crash) for mention in crash.contact_mentions):
+        return []  # the vehicles struck things
     if not pairs and len(crash.roster.ids) >= 2:
         a, b = crash.roster.ids[:2]
         if crash.contact_mentions and frozenset((a, b)) in crash.missed:
@@ -38,6 +41,12 @@ def infer_contacts(crash: CrashTold, inferred: CrashInferred, pairs: list[Contac
         guess = ContactMention(a, b, None, None, 0, "impact", mutual=True)
         return [replace(_join(crash, inferred, guess), stated=False)]
     return [_join(crash, inferred, mention) for mention in pairs]
+
+
+def _tells_thing(mention: ContactMention, crash: CrashTold) -> bool:
+    """Whether a sentence of the crash itself tells that a vehicle struck a thing that stops it."""
+    told = mention.role in STORY_ROLES and mention.other not in crash.roster.ids
+    return told and mention.other not in GROUND
 
 
 def _join(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) -> ContactFacts:

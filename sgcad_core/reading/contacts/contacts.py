@@ -16,6 +16,7 @@ from sgcad_core.reading.contacts.contact_nouns import (
     door_of,
     involved,
     is_noun,
+    mutual,
     paired_areas,
     struck_pair,
     subject_area,
@@ -23,8 +24,17 @@ from sgcad_core.reading.contacts.contact_nouns import (
     touches,
     unnamed_pair,
     with_striker,
+    without_agent,
 )
 from sgcad_core.reading.contacts.contact_records import ContactMention
+from sgcad_core.reading.contacts.contact_things import (
+    any_object,
+    behind_things,
+    listed,
+    lone_thing,
+    thing_acts,
+    thing_hit,
+)
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement, subject_starts
 from sgcad_core.reading.text.area_phrases import Zone, area_by, area_if_told, area_of, plain
@@ -66,12 +76,24 @@ def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
             continue
         mention = _contact_mention(statement, text, m, starts, roster)
         if mention:
-            found.append(mention)
-    found += touches(statement, text)
+            told = [mention, *listed(mention, text[m.end() :]), *behind_things(mention, text[m.end() :])]
+            told += [replace(mention, actor=v) for v in _subjects(statement, text[: m.start()], m, starts)
+                     if v != mention.actor and lone_thing(text[m.end() :])]  # fmt: skip
+            found += [replace(b, at=_place(text, b.other, m.start())) for b in told]
+    nouns = tuple(touches(statement, text))
+    found += [replace(b, at=b.at or _place(text, b.other)) for b in nouns]
+    found = sorted(found, key=lambda b: b.at) if any(b.at for b in nouns) else found
     found = [with_striker(b, text) for b in found] or unnamed_pair(statement, text, roster)
     told_by_verbs = {frozenset((b.actor, b.other)) for b in found}
+    found += [b for b in without_agent(statement, text, roster) if frozenset((b.actor, b.other)) not in told_by_verbs]
     found += [b for b in together(statement, text) if frozenset((b.actor, b.other)) not in told_by_verbs]
     return [b for b in found if b.actor in roster.ids and b.actor != b.other]
+
+
+def _place(text: str, word: str, verb: int = 0) -> int:
+    """Where the first mention of a word behind a verb stands, else the verb."""
+    at = text.lower().find(word.lower(), verb)
+    return verb if at < 0 else at
 
 
 def _contact_mention(
@@ -93,14 +115,15 @@ def _contact_mention(
         else None
     )
     if thing:
-        return _thing_hit(statement, thing, scope, m.group())
-    if not passive and roster.counted and (moves := rule("contact_words.thing_moves").search(before)):
-        return _hit_by_thing(statement, moves, scope, m.group(), roster)
+        return thing_hit(statement, thing, scope, m.group())
+    moves = thing_acts(before, roster)
+    if moves and not passive and (hit := _hit_by_thing(statement, moves, scope, m.group(), roster)):
+        return hit
     subjects = _subjects(statement, before, m, starts)
     if not subjects:
         return None
-    if len(subjects) > 1:
-        return _mutual(statement, subjects, m.group(), before, scope)
+    if len(subjects) > 1 and not lone_thing(scope):
+        return mutual(statement, subjects, m.group(), before, scope)
     actor, actor_area = subjects[0], subject_area(before, subjects[0])
     if actor not in MENTION.findall(before):
         actor = _meant_by_pronoun(statement, actor, scope, roster)
@@ -118,17 +141,6 @@ def _meant_by_pronoun(statement: Statement, actor: str, scope: str, roster: Rost
     """Resolves "it" as striker or struck: never the vehicle that the sentence itself names behind the verb."""
     whom = MENTION.search(scope)
     return (_the_other(statement, actor, roster) or actor) if whom and whom.group() == actor else actor
-
-
-def _thing_hit(statement: Statement, thing: re.Match[str], scope: str, verb: str) -> ContactMention | None:
-    """ "A tree was struck by the front of V1"."""
-    by = rule("contact_words.by").search(scope)
-    if not by:
-        return None
-    area = area_if_told(by["area"])
-    return ContactMention(
-        by["v"], thing["object"].lower(), area, None, statement.number, statement.role, False, verb.lower()
-    )
 
 
 def _hit_by_thing(
@@ -151,6 +163,11 @@ def _subjects(
     if caused:
         return (caused["v"],)
     fitting = [s for at, _, s in starts if at < m.start()]
+    if fitting and not fitting[-1]:  # somebody else is the subject, unless the verb has one of its own
+        own = rule("contact_words.right_before").search(before)
+        goes_on = rule("contact_words.and_then").search(before)
+        earlier = next((s for s in reversed(fitting) if s), ())
+        return (own["v"],) if own else earlier if goes_on else ()
     if fitting:
         return fitting[-1]
     mentions = MENTION.findall(before)
@@ -207,7 +224,8 @@ def _object(statement: Statement, actor: str, scope: str, roster: Roster) -> tup
     if m and not (thing and thing.end() < m.start("v") and thing["object"].lower() != "trailer"):
         area = area_if_told(m["area"]) or _area_behind(scope[m.end() :])
         return _not_itself(m["v"], actor, roster, statement), area
-    if thing and thing["object"].lower() not in ("trailer", "parked"):
+    towed = ("trailer", "parked") if len(roster.ids) > 1 else ("parked",)
+    if thing and thing["object"].lower() not in towed:
         return thing["object"].lower(), None
     if (
         rule("contact_words.pronoun_object").match(scope)
@@ -222,8 +240,7 @@ def _object(statement: Statement, actor: str, scope: str, roster: Roster) -> tup
     if late and late.group() != actor and late.start() < 60:
         named = rule("contact.area_of_vehicle").given(vehicle=late.group()).search(scope)
         return late.group(), area_if_told(named["area"]) if named else _area_behind(scope[late.end() :])
-    anything = rule("contact_words.any_object").match(scope) if roster.counted else None
-    return (anything["object"].lower(), None) if anything else (None, None)
+    return any_object(statement, scope, roster), None
 
 
 def _the_other(statement: Statement, actor: str, roster: Roster) -> str | None:
@@ -266,6 +283,10 @@ def _passive(
     other = by["v"] if by else roster.other(actor)
     if by and rule("contact.by_stranger").search(scope[: by.start()]):
         return None
+    if not by and not roster.counted and (thing := rule("contact_words.by_thing").search(scope)):
+        return ContactMention(
+            actor, thing["object"].lower(), area, None, statement.number, statement.role, False, verb.lower()
+        )
     other_area = area_if_told(by["area"]) if by else area_by(scope)
     own = rule("contact_words.with_its").search(scope[by.end() :] if by else scope)
     other_area = other_area or (area_of(own["area"]) if own else None)
@@ -277,24 +298,3 @@ def _passive(
     area = area or (_area_behind(scope[by.end() :]) if by and not own else None)
     other = _not_itself(other, actor, roster, statement) or other
     return ContactMention(other, actor, other_area, area, statement.number, statement.role, True, verb.lower())
-
-
-def _mutual(statement: Statement, subjects: tuple[str, ...], verb: str, before: str, scope: str) -> ContactMention:
-    """ "V1 and V2 collided front to front"."""
-    against = rule("contact_words.against").search(scope)
-    if against:
-        zones = {against["v1"]: area_if_told(against["a1"]), against["v2"]: area_if_told(against["a2"])}
-        first, second = zones.get(subjects[0]), zones.get(subjects[1])
-        return ContactMention(
-            subjects[0], subjects[1], first, second, statement.number, statement.role, False, verb.lower(), True
-        )
-    pair = rule("contact_words.paired").search(scope)
-    first, second = (area_if_told(pair["a1"]), area_if_told(pair["a2"])) if pair else (None, None)
-    if not pair:
-        both = rule("contact_words.with_its").search(scope) or rule("contact_words.of_both").search(before)
-        first = second = area_of(both["area"]) if both else None
-    if rule("contact.head_on").search(scope):
-        first = second = "front"
-    return ContactMention(
-        subjects[0], subjects[1], first, second, statement.number, statement.role, False, verb.lower(), True
-    )

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from sgcad_core.reading.actors.vehicles import Roster
+from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.language import Rule, of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement, segments
 from sgcad_core.reading.motion.motion_record import ManeuverCue, Source
@@ -83,9 +84,12 @@ def courses_told(
     segments: Sequence[Segment],
     roster: Roster,
     coded: Mapping[str, ManeuverCue] | None = None,
+    event: Untouched | None = None,
 ) -> CoursesRead:
-    """The course of every vehicle as told. `segments`: of `acting_segments`; `coded`: losses of control by codes."""
+    """The course of every vehicle as told. `segments`: of `acting_segments`; `coded`: losses of control by codes;
+    `event`: what stands for the impact where nothing is touched."""
     impact = min((t.number for t in statements if t.role == "impact"), default=10_000)
+    impact = event.source.number if event else impact
     heard = {v: _CourseReader() for v in roster.ids}
     for vehicle, cue in (coded or {}).items():
         heard[vehicle].add("lost_control", True, cue.source)
@@ -93,7 +97,9 @@ def courses_told(
         if segment.role in UNREAD:
             continue
         for vehicle in segment.subjects:
-            _read(heard[vehicle], segment, impact)
+            _read(heard[vehicle], segment, impact, event.source.words.lower() if event else "")
+    if event and event.kind == "rollover":
+        heard[event.vehicle].add("rolls", True, event.source)
     courses = {v: one.course for v, one in heard.items() if not one.course.empty}
     sources = {f"{v} {name}": source for v, one in heard.items() for name, source in one.sources.items()}
     return CoursesRead(courses, sources)
@@ -134,8 +140,10 @@ def _with_own_acts(segments: Sequence[Segment], statement: Statement) -> list[Se
     return found
 
 
-def _read(one: _CourseReader, segment: Segment, impact: int) -> None:
+def _read(one: _CourseReader, segment: Segment, impact: int, event: str) -> None:
     before, behind = _split(segment, impact)
+    if event and segment.number == impact and (at := segment.text.lower().find(event)) >= 0:
+        before, behind = segment.text[:at], segment.text
     _read_evasion(one, segment, before)
     if behind:
         _read_spin(one, segment, behind)
@@ -236,6 +244,8 @@ def _rest_clause(segment: Segment, text: str) -> str | None:
 def _read_facing(one: _CourseReader, segment: Segment, clause: str) -> None:
     m = rule("course_rest.facing").search(clause)
     if not m:
+        if (about := rule("course_rest.turned_about").search(clause)) and "spin_deg" not in one.sources:
+            one.add("spin_deg", 180.0, Source(segment.number, about[0], "course_rest.turned_about"))
         return
     point = WORDS[(m["point"] or m["heads"] or m["way"]).lower()]
     angle = 45.0 * COMPASS.index(point)

@@ -7,21 +7,22 @@ order with what else was hit. Reads resolved sentences; knows no road.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from sgcad_core.reading.actors.vehicles import Roster
-from sgcad_core.reading.contacts.contact_records import ContactMention
+from sgcad_core.reading.contacts.contact_records import GROUND, ContactMention
 from sgcad_core.reading.contacts.crash_course import UNREAD, CoursesRead, ImpactRead
 from sgcad_core.reading.inference.inference_state import end_of
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
 from sgcad_core.reading.motion.motion_record import Source
-from sgcad_core.reading.text.area_phrases import area_of
+from sgcad_core.reading.text.area_phrases import area_of, plain
+from sgcad_core.reading.text.sentence_roles import Role
 from sgcad_core.records.course import ImpactTold
 from sgcad_core.records.specs import Area
 
-GROUND = ("curb", "island", "median", "ditch", "ground")
-"""What a vehicle drives over: no body that stops it."""
+_RETOLD: tuple[Role, ...] = ("interview", "injury")
 
 
 def later_impacts(
@@ -32,22 +33,85 @@ def later_impacts(
 ) -> tuple[ImpactRead, ...]:
     """Contacts with things and second contacts of the same pair, in order. `segments`: of `acting_segments`."""
     first = next((b for b in contact_mentions if b.other in roster.ids), None)
-    start = first.number if first else -1
-    things = [read for segment in segments for read in _things(segment, start)]
+    places = {t.number: plain(t, roster).lower() for t in statements}
+    things = _in_order(
+        places,
+        [read for segment in segments for read in _things(segment)],
+        [read for b in contact_mentions[not first :] if (read := _of_mention(b, roster))],
+    )
     again = list(_again(statements, roster, contact_mentions, first)) if first else []
-    people = list(_people(roster, contact_mentions, first)) if first else []
-    found = sorted([*_once(things), *again, *people], key=lambda read: read.source.number)
-    return tuple(found)
+    people = list(_people(roster, contact_mentions, first is None))
+    found = sorted([*_once(things), *again, *people], key=lambda read: _place(read, places))
+    pairs = _first_places(contact_mentions, roster)
+    return tuple(_ranked(read, places, pairs) if read not in again else read for read in found)
 
 
-def with_resting_contacts(impacts: Sequence[ImpactRead], read: CoursesRead) -> tuple[ImpactRead, ...]:
-    """The impacts with those that a rest implies: a vehicle at rest against a tree has struck it last."""
+def things_struck(
+    statements: Sequence[Statement], segments: Sequence[Segment], roster: Roster
+) -> tuple[ContactMention, ...]:
+    """Contacts with things that verbs other than those of touching tell ("backed into a fence"), of vehicles with
+    numbers."""
+    if roster.counted:
+        return ()
+    roles = {t.number: t.role for t in statements}
+    return tuple(
+        ContactMention(one.impact.actor, one.impact.other, one.impact.actor_area, None, one.source.number,
+                       roles[one.source.number], words=one.source.words)
+        for one in later_impacts(statements, segments, roster, ())
+    )  # fmt: skip
+
+
+def _place(read: ImpactRead, texts: Mapping[int, str]) -> tuple[int, int]:
+    """Where an impact is told: the number of its sentence, and the place of the struck one's word in it."""
+    number, other = read.source.number, read.impact.other
+    return number, max(texts.get(number, "").find(other.lower()), 0)
+
+
+def _first_places(contact_mentions: Sequence[ContactMention], roster: Roster) -> list[tuple[int, int]]:
+    """Where the first contact of each pair of vehicles is told; summaries give no order."""
+    found: dict[frozenset[str], tuple[int, int]] = {}
+    for b in contact_mentions:
+        if b.other in roster.ids and not b.summary:
+            found.setdefault(frozenset((b.actor, b.other)), (b.number, b.at))
+    return list(found.values())
+
+
+def _ranked(read: ImpactRead, texts: Mapping[int, str], pairs: Sequence[tuple[int, int]]) -> ImpactRead:
+    """An impact with the number of contacts of vehicles that are told before it."""
+    place = _place(read, texts)
+    after = sum(pair < place for pair in pairs) if pairs else 1
+    return read._replace(impact=replace(read.impact, after=after))
+
+
+def _of_mention(mention: ContactMention, roster: Roster) -> ImpactRead | None:
+    """A thing that a verb of touching tells; None of vehicles, of people and of what one drives over."""
+    person = any(user.search(mention.other) for user in of_role("road_user"))
+    if mention.other in roster.ids or person or mention.other in GROUND or mention.role in _RETOLD:
+        return None
+    area = end_of(mention.actor_area)
+    impact = ImpactTold(mention.actor, _word(mention.other), area)
+    return ImpactRead(impact, mention.source)
+
+
+def _in_order(texts: Mapping[int, str], acts: Sequence[ImpactRead], mentions: Sequence[ImpactRead]) -> list[ImpactRead]:
+    """Both readings of things in the order of the text; one that both have is the act, which knows its vehicle."""
+    acted = {(read.source.number, read.impact.other) for read in acts}
+    found = [*acts, *(read for read in mentions if (read.source.number, read.impact.other) not in acted)]
+    return sorted(found, key=lambda read: _place(read, texts))
+
+
+def with_resting_contacts(impacts: Sequence[ImpactRead], read: CoursesRead, last: int = 1) -> tuple[ImpactRead, ...]:
+    """The impacts with those that a rest implies: a vehicle at rest against a tree has struck it last.
+
+    `last`: the number of contacts of vehicles.
+    """
     struck = {(one.impact.actor, _word(one.impact.other)) for one in impacts}
     found = list(impacts)
     for vehicle, course in read.courses.items():
         prop = course.rest.against
         if prop and prop not in GROUND and (vehicle, _word(prop)) not in struck:
-            found.append(ImpactRead(ImpactTold(vehicle, _word(prop)), read.sources[f"{vehicle} rest.against"]))
+            impact = ImpactTold(vehicle, _word(prop), after=max(last, 1))
+            found.append(ImpactRead(impact, read.sources[f"{vehicle} rest.against"]))
     return tuple(found)
 
 
@@ -62,14 +126,27 @@ def _once(things: Sequence[ImpactRead]) -> Iterator[ImpactRead]:
         last[key] = number
 
 
-def _things(segment: Segment, start: int) -> Iterator[ImpactRead]:
-    """Things that a vehicle hits; `start`: the sentence of the first contact of two vehicles."""
+def _things(segment: Segment) -> Iterator[ImpactRead]:
+    """Things that vehicles hit, one by one where a list of them is told; each vehicle hits its own."""
     if segment.role in UNREAD or segment.role == "interview" or not segment.subjects:
         return
-    for m in rule("course_impacts.object").finditer(segment.text):
-        for thing in (m["thing"], m["next"]):
-            if thing and thing not in GROUND and not _undone(segment.text, m):
-                yield _hit(segment, m, thing, segment.number < start)
+    end = 0
+    verbs = (rule("course_impacts.object"), rule("course_impacts.into"))
+    for m in sorted((m for verb in verbs for m in verb.finditer(segment.text)), key=lambda m: m.start()):
+        if m.start() < end or _undone(segment.text, m):
+            continue
+        for thing in _listed(segment.text, m):
+            end = thing.end()
+            if thing["thing"] not in GROUND:
+                yield from (_hit(segment, m, thing["thing"], vehicle) for vehicle in segment.subjects)
+
+
+def _listed(text: str, first: re.Match[str]) -> Iterator[re.Match[str]]:
+    """A thing that was hit, and those that are listed behind it."""
+    found: re.Match[str] | None = first
+    while found:
+        yield found
+        found = rule("course_impacts.further").match(text, found.end())
 
 
 def _undone(text: str, m: re.Match[str]) -> bool:
@@ -77,10 +154,10 @@ def _undone(text: str, m: re.Match[str]) -> bool:
     return bool(rule("course_evasion.to_avoid").search(before) or rule("course_impacts.nearly").search(before))
 
 
-def _hit(segment: Segment, m: re.Match[str], thing: str, before: bool) -> ImpactRead:
+def _hit(segment: Segment, m: re.Match[str], thing: str, vehicle: str) -> ImpactRead:
     own = rule("contact_words.with_its").search(segment.text[m.end() : m.end() + 60])
     area = end_of(area_of(own["area"])) if own else None
-    impact = ImpactTold(segment.subjects[0], _word(thing), area, None, before)
+    impact = ImpactTold(vehicle, _word(thing), area)
     return ImpactRead(impact, Source(segment.number, m[0], "course_impacts.object"))
 
 
@@ -89,13 +166,13 @@ def _word(thing: str) -> str:
     return thing.replace("-", " ").split()[-1]
 
 
-def _people(roster: Roster, contact_mentions: Sequence[ContactMention], first: ContactMention) -> Iterator[ImpactRead]:
-    """Pedestrians and cyclists struck after the first contact of the vehicles."""
-    seen: set[str] = set()
-    for b in contact_mentions:
-        told = b.other not in roster.ids and b.number > first.number and b.role not in ("interview", "injury")
-        if told and b.other not in seen and any(user.search(b.other) for user in of_role("road_user")):
-            seen.add(b.other)
+def _people(roster: Roster, contact_mentions: Sequence[ContactMention], alone: bool) -> Iterator[ImpactRead]:
+    """Pedestrians, cyclists and animals that are struck; `alone`: the first contact of all is not among these."""
+    seen: set[tuple[str, str]] = set()
+    for b in contact_mentions[alone:]:
+        told = b.other not in roster.ids and b.role not in _RETOLD
+        if told and (b.actor, b.other) not in seen and any(user.search(b.other) for user in of_role("road_user")):
+            seen.add((b.actor, b.other))
             yield ImpactRead(ImpactTold(b.actor, b.other, end_of(b.actor_area)), b.source)
 
 

@@ -89,3 +89,10 @@ def motion_untold(text: str) -> Gap:
         return _NO_CRASH
     reason = "the narrative tells neither who struck whom nor how anybody traveled"
     return Gap(reason, ("who struck whom, and with which sides", "in which direction each traveled"), unread=True)
+
+
+def too_thin() -> Gap:
+    """The gap of a text that tells which two vehicles touched and nothing else: all else would be a guess."""
+    reason = "the narrative tells only who touched whom: sides, directions, maneuvers and roads are all left open"
+    missing = "with which sides they touched", "in which direction each traveled", "on which road"
+    return Gap(reason, missing, unread=True)

@@ -31,6 +31,8 @@ class Hypothesis(NamedTuple):
     """Whether the text is silent on what differs, so that nothing told gives way."""
     corner: bool = False
     """Whether it is the other side of a corner in a report without vehicle numbers: the words fit both."""
+    either: bool = False
+    """Whether it is the other side of a told corner in any report."""
 
 
 def hypotheses(facts: CrashFacts) -> list[Hypothesis]:
@@ -54,7 +56,8 @@ def _sides(facts: CrashFacts, first: ContactFacts) -> Iterator[Hypothesis]:
                 other = replace(first, **{f"{role}_area": side})
                 words = f"the {side} of {getattr(first, role)} instead of the {now}"
                 corner = facts.unnumbered and len(may) == 2
-                yield Hypothesis(_with_first(facts, other), words, price, len(may) == len(AREAS), corner)
+                either = len(may) == 2
+                yield Hypothesis(_with_first(facts, other), words, price, len(may) == len(AREAS), corner, either)
 
 
 def _guesses(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis]:

@@ -13,7 +13,10 @@ from sgcad_core.reading.contacts.contact_records import ContactMention, with_are
 from sgcad_core.reading.contacts.contact_sides import infer_contacts
 from sgcad_core.reading.inference.inference_state import QUARTER_DEG, CrashInferred, CrashTold, end_of
 from sgcad_core.reading.language import rule
+from sgcad_core.reading.motion.heading_lane_cues import TURNS_TO
 from sgcad_core.reading.motion.maneuvers import (
+    INTO_LANE_OF,
+    OUT_OF_LANE_LEFT,
     SHIFTED,
     Decision,
     changed_lanes_after_turn,
@@ -40,9 +43,11 @@ def infer_crash(crash: CrashTold) -> CrashInferred:
     _turned_headings(crash, inferred)
     _faced_headings(crash, inferred)
     _still_moving(crash, inferred, pairs)
+    _set_going(crash, inferred, pairs)
     _change_hands(crash, inferred, pairs)
     _mend_headings(crash, inferred, pairs)
     _complete_headings(crash, inferred, pairs)
+    _over_centerline(crash, inferred, pairs)
     inferred.exits = {v: e for v in crash.roster.ids if (e := _exit(crash.motions[v], inferred, v)) is not None}
     inferred.contacts = infer_contacts(crash, inferred, pairs)
     return inferred
@@ -55,6 +60,35 @@ def _still_moving(crash: CrashTold, inferred: CrashInferred, pairs: list[Contact
         source = inferred.sources.get(f"{v} maneuver")
         if inferred.maneuvers[v] == "stopped" and source and rule("near_events.came_to_stop").match(source.words):
             inferred.maneuvers[v] = "slowing"
+
+
+def _set_going(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
+    """Sets a vehicle going that stood, where the first contact as told cannot come about otherwise.
+
+    Its front strikes a flank, or its flank is struck by one that goes straight on across its way. Of 18
+    such vehicles in a sample of coded reports 16 were coded as moving.
+    """
+    ordered = crash.roster.counted  # of an account in order the last act before the contact stands
+    for b in pairs[:1] if not (crash.near or ordered) else ():
+        for v, other in ((b.actor, b.other), (b.other, b.actor)):
+            own, theirs = (end_of(zone) for zone in b.areas_of(v))
+            if inferred.maneuvers[v] != "stopped" or "back" in (own, theirs):
+                continue
+            strikes = v == b.actor and not b.mutual and own == "front" and theirs in ("left", "right")
+            if strikes or (theirs == "front" and own in ("left", "right") and _crosses(inferred, other, v)):
+                meant = meant_turn(crash.motions[v])
+                inferred.maneuvers[v] = meant.maneuver if meant else "straight"
+                if not meant:
+                    inferred.told_maneuvers.discard(v)
+                inferred.started.add(v)
+                stop = inferred.sources[f"{v} maneuver"]
+                inferred.sources[f"{v} maneuver"] = stop._replace(rule="infer.set_going")
+
+
+def _crosses(inferred: CrashInferred, mover: str, stood: str) -> bool:
+    """Whether a vehicle goes straight on across the way of another one, both ways being told."""
+    told = {mover, stood} <= inferred.stated and inferred.maneuvers[mover] == "straight"
+    return told and between(inferred.headings[stood], inferred.headings[mover]) in (90, 270)
 
 
 def _turned_headings(crash: CrashTold, inferred: CrashInferred) -> None:
@@ -83,6 +117,18 @@ def _faced_headings(crash: CrashTold, inferred: CrashInferred) -> None:
             _, way, source = max(faced, key=lambda told: told[0])
             inferred.headings[v], inferred.sources[f"{v} heading"] = way, source  # type: ignore[assignment]
             inferred.stated.add(v)
+
+
+def _over_centerline(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
+    """Out of the own lane to the left, or into that of one that comes the other way: over the middle of the road."""
+    for v in crash.roster.ids:
+        source = inferred.sources.get(f"{v} maneuver")
+        hit = next((b for b in pairs if v in (b.actor, b.other)), None)
+        if hit is None or source is None or source.rule not in (OUT_OF_LANE_LEFT, INTO_LANE_OF):
+            continue
+        other = hit.other if hit.actor == v else hit.actor
+        if between(inferred.headings[v], inferred.headings[other]) in (135, 180, 225):
+            inferred.maneuvers[v] = "crossing_centerline"
 
 
 def _change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
@@ -172,8 +218,7 @@ def _complete_headings(crash: CrashTold, inferred: CrashInferred, pairs: list[Co
     ids = crash.roster.ids
     if not ids:
         return
-    if not inferred.headings:
-        _from_exits(crash, inferred)
+    _from_exits(crash, inferred)
     if not inferred.headings:
         inferred.headings[ids[0]] = "N"
     for _ in ids:
@@ -200,12 +245,15 @@ def _mend_headings(crash: CrashTold, inferred: CrashInferred, pairs: list[Contac
 
 
 def _from_exits(crash: CrashTold, inferred: CrashInferred) -> None:
-    """A vehicle that turned left to go west had come from the south."""
+    """A vehicle that turned left to go west had come from the south; beside told headings where the way is plain."""
     for v in crash.roster.ids:
-        exits, maneuver = crash.motions[v].exits, inferred.maneuvers[v]
-        if exits and maneuver in ("turn_left", "turn_right"):
+        motion, maneuver = crash.motions[v], inferred.maneuvers[v]
+        plain = [e for e in motion.exits if motion.sources[f"exit {e}"].rule in TURNS_TO]
+        exits = plain if inferred.headings else motion.exits
+        if v not in inferred.headings and exits and maneuver in ("turn_left", "turn_right"):
             inferred.headings[v] = turned(exits[0], 90 if maneuver == "turn_left" else -90)
-            return
+            if plain:
+                inferred.sources[f"{v} heading"] = motion.sources[f"exit {exits[0]}"]
 
 
 def _partner(vehicle: str, known: Mapping[str, Compass], pairs: list[ContactMention], crash: CrashTold) -> str | None:

@@ -10,6 +10,7 @@ from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.contacts.contact_records import ContactFacts, ContactMention
 from sgcad_core.reading.contacts.crash_course import CoursesRead, ImpactRead
 from sgcad_core.reading.contacts.near_crash import NearMiss
+from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.motion.motion_record import Source, VehicleMotion
 from sgcad_core.reading.text.area_phrases import Zone
 from sgcad_core.records.specs import Area, Compass, Maneuver
@@ -42,6 +43,8 @@ class CrashTold:
     """Directions of pedestrians and others without a number, by their word in `contact_mentions`."""
     missed: frozenset[frozenset[str]] = frozenset()
     """Pairs that the text tells to have nearly touched."""
+    untouched: Untouched | None = None
+    """Of a report that tells no contact: what happens instead."""
 
 
 @dataclass
@@ -57,6 +60,8 @@ class CrashInferred:
     """Where "V1 heading", "V1 maneuver" and "V1 speed" were read, as far as they were."""
     speeds: dict[str, int] = field(default_factory=dict)
     contacts: list[ContactFacts] = field(default_factory=list)
+    started: set[str] = field(default_factory=set)
+    """Vehicles that are told to have stood, and must have moved on to be in the contact as it is told."""
 
 
 def end_of(zone: Zone | None) -> Area | None:

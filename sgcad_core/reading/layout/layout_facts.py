@@ -9,10 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from sgcad_core.kinds import ALLEY, DRIVEWAY, JOINING, PARKING_LOT, RAMP, T
-from sgcad_core.reading.crash_facts import VehicleFacts
+from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP, T
 from sgcad_core.reading.junctions.junction import JunctionFacts
 from sgcad_core.reading.layout.answered_layout import answered_layout
+from sgcad_core.reading.layout.lanes_used import lanes_added, least_lanes, with_told_lanes
 from sgcad_core.reading.layout.layout_places import (
     circle_lanes,
     offset,
@@ -23,13 +23,15 @@ from sgcad_core.reading.layout.layout_places import (
     with_edges,
     with_opening,
 )
+from sgcad_core.reading.layout.leg_parts import curve_of, kind_of, median_of, usual_limit
+from sgcad_core.reading.layout.legs_used import with_used_legs
 from sgcad_core.reading.motion.motion_record import DRIVES
 from sgcad_core.reading.roads.carriageway import Carriageway, DirectionLanes, carriageway
 from sgcad_core.reading.roads.lanes import LaneFacts
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
 from sgcad_core.reading.roads.road_mentions import axis_of
-from sgcad_core.reading.text.compass import OPPOSITE_HAND, between, turned
-from sgcad_core.records.specs import Compass, Leg, Median, RoadKind, RoadLayout, Turn
+from sgcad_core.reading.text.compass import between, turned
+from sgcad_core.records.specs import Compass, Leg, RoadLayout, Turn
 
 _RIGHT: tuple[Turn, ...] = ("right",)
 _THROUGH: tuple[Turn, ...] = ("through",)
@@ -44,12 +46,19 @@ class Defaults:
     speed_limit_mph: int | None = None
 
 
-def layout_of_facts(facts: RoadFacts, defaults: Defaults | None = None) -> RoadLayout:
+def layout_of_facts(facts: RoadFacts, defaults: Defaults | None = None, *, as_counted: bool = False) -> RoadLayout:
     """The layout that carries the facts and every vehicle's path. Never fails.
+
+    `as_counted`: without the lanes that roads get beside those that the text counts.
 
     A driveway that a vehicle uses is a leg of the hub; beside a named junction driveways are left out.
     """
-    return _Builder(facts, defaults or Defaults()).layout()
+    return _Builder(facts, defaults or Defaults()).layout(as_counted)
+
+
+def lane_notes(facts: RoadFacts) -> tuple[str, ...]:
+    """Notes on lanes that the roads of a layout get for its vehicles, beside those that are told or usual."""
+    return _Builder(facts, Defaults()).added()
 
 
 @dataclass(frozen=True)
@@ -57,10 +66,17 @@ class _Builder:
     facts: RoadFacts
     defaults: Defaults
 
-    def layout(self) -> RoadLayout:
+    def layout(self, as_counted: bool) -> RoadLayout:
         """The whole layout, places and answered values laid over the roads."""
-        roads = answered_layout(self.facts, with_approaches(self.facts, self._roads_alone()))
+        used = with_used_legs(self.facts, self._roads_alone(), self._told_leg)
+        roads = answered_layout(self.facts, with_approaches(self.facts, used))
+        roads = roads if as_counted else with_told_lanes(self.facts, roads)
         return with_opening(self.facts, with_closed(self.facts, with_edges(self.facts, roads)))
+
+    def added(self) -> tuple[str, ...]:
+        """Notes on lanes that the roads get beside those told or usual, since vehicles are told to use them."""
+        used = with_used_legs(self.facts, self._roads_alone(), self._told_leg)
+        return lanes_added(self.facts, answered_layout(self.facts, with_approaches(self.facts, used)))
 
     def _roads_alone(self) -> RoadLayout:
         main, cross = self._two_roads()
@@ -113,10 +129,13 @@ class _Builder:
         used: dict[Compass, int] = {}
         for v in along:
             if v.heading and v.origin not in DRIVES:
-                used[v.heading] = max(used.get(v.heading, 1), _lane_used(v))
+                used[v.heading] = max(used.get(v.heading, 1), least_lanes(v, self.facts.crash))
         default = 2 if road.kind == "freeway" or road.lanes.divided else self.facts.junction.circle_lanes or 1
         lanes = _of_freeway(road.lanes) if road.kind == "freeway" else road.lanes
-        return carriageway(lanes, axis, lead, used, max(default, self.defaults.lanes_each_way))
+        numbered = any(v.lane for v in along)
+        default = max(default, self.defaults.lanes_each_way)
+        both = len({v.heading for v in along if v.heading_stated and v.maneuver != "parked"}) > 1
+        return carriageway(lanes, axis, lead, used, default, numbered=numbered, against=both)
 
     # -------------------------------------------------------------- legs
     def _plain(self, road: RoadFact) -> tuple[Leg, ...]:
@@ -194,12 +213,17 @@ class _Builder:
         return Leg(
             bearing=bearing, lanes_in=lanes_in, lanes_out=lanes_out,
             turns_in=_turns(coming, lanes_in) if at_junction else (),
-            center_turn_lane=_center(lanes, lanes_in, lanes_out),
-            median=_median(road, lanes_in, lanes_out), kind=_kind(road), alley=road.kind == ALLEY,
-            curve=_curve(road, inward),
+            center_turn_lane=lanes.center_turn_lane and bool(lanes_in and lanes_out),
+            median=median_of(road, lanes_in, lanes_out), kind=kind_of(road), alley=road.kind == ALLEY,
+            curve=curve_of(road, inward),
             control=self._leg_control(bearing) if at_junction and lanes_in else "none",
-            speed_limit_mph=road.speed_limit_mph or _usual_limit(road) or self.defaults.speed_limit_mph,
+            speed_limit_mph=road.speed_limit_mph or usual_limit(road) or self.defaults.speed_limit_mph,
         )  # fmt: skip
+
+    def _told_leg(self, bearing: Compass) -> Leg | None:
+        """A leg of the street that is told to lie on that axis; None where none is."""
+        road = next((r for r in self.facts.streets if r.axis == axis_of(bearing)), None)
+        return self._leg(road, self._carriageway(road), bearing) if road else None
 
     def _leg_control(self, bearing: Compass) -> Literal["none", "signal", "flashing", "stop", "yield"]:
         junction = self.facts.junction
@@ -258,42 +282,3 @@ def _of_freeway(told: LaneFacts) -> LaneFacts:
     """Its carriageways stand apart, told or not, and none has one lane: "two lanes" are those of one of them."""
     whole = told.total == 2 and not told.one_way and not told.each_way and not told.toward
     return replace(told, divided=True, each_way=2 if whole else told.each_way)
-
-
-def _center(lanes: Carriageway, lanes_in: int, lanes_out: int) -> bool:
-    return lanes.center_turn_lane and lanes_in > 0 and lanes_out > 0
-
-
-def _median(road: RoadFact, lanes_in: int, lanes_out: int) -> Median:
-    if not lanes_in or not lanes_out:
-        return "none"
-    if road.lanes.median:
-        return road.lanes.median
-    if road.lanes.divided:
-        return "grass" if road.kind == "freeway" else "raised"
-    return "none"
-
-
-def _usual_limit(road: RoadFact) -> int | None:
-    """The statutory limit that most states post on freeways, on rural roads and in alleys, mph; None elsewhere."""
-    return {"freeway": 60, RAMP: None, DRIVEWAY: None, ALLEY: 15}.get(road.kind, 50 if road.rural else None)
-
-
-def _kind(road: RoadFact) -> RoadKind:
-    return DRIVEWAY if road.kind == ALLEY else road.kind if road.kind in JOINING else "road"
-
-
-def _curve(road: RoadFact, inward: Compass) -> Literal["none", "left", "right"]:
-    """The bend on a leg as one drives towards the hub: told for that direction, or seen from the other end."""
-    told = dict(road.curve)
-    if inward in told:
-        return told[inward]
-    back = told.get(turned(inward, 180))
-    return OPPOSITE_HAND[back] if back else "none"
-
-
-def _lane_used(v: VehicleFacts) -> int:
-    """The least number of lanes in a direction where a vehicle is in that lane."""
-    if v.lane:
-        return min(abs(v.lane), 6)
-    return {"left": 2, "middle": 3}.get(v.lane_word or "", 1)

@@ -1,8 +1,9 @@
-"""The legs of a junction that the told paths of its vehicles use. Knows no road network format."""
+"""The legs of a junction that the told paths of its vehicles use, and a layout that has them. Knows no road network
+format."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP, junction_kind
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
@@ -12,8 +13,9 @@ from sgcad_core.reading.motion.relative_headings import contact_turn
 from sgcad_core.reading.roads.road_facts import RoadFacts
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.text.compass import between, turned
-from sgcad_core.records.specs import Compass, Maneuver
+from sgcad_core.records.specs import Compass, Leg, Maneuver, RoadLayout
 
+_MOST_LEGS = 8
 _ONWARD = ("straight", "slowing", "negotiating_curve")
 OFF_ROAD = (*DRIVES, RAMP, "shoulder")
 """Where vehicles come from that may tell of the street which they join, not of where they were."""
@@ -94,3 +96,49 @@ def _joined(v: VehicleFacts, facts: RoadFacts) -> bool:
     """Whether the heading of one that came from off the road may be that of the road which it joined."""
     streets = {road.axis for road in facts.streets}
     return v.origin in OFF_ROAD and v.heading is not None and axis_of(v.heading) in streets
+
+
+# ------------------------------------------------------------------ a layout that has them
+def with_used_legs(facts: RoadFacts, layout: RoadLayout, told: Callable[[Compass], Leg | None]) -> RoadLayout:
+    """The layout with a leg wherever the text has a vehicle come from or turn into: one that no vehicle uses is laid
+    there, else one more is added. `told`: the leg of the street that the text tells at a bearing."""
+    if len(layout.legs) < 3 or layout.accesses or facts.junction.kind == RAMP:
+        return layout
+    used, legs = legs_used(facts), list(layout.legs)
+    came = {turned(v.heading, 180) for v in facts.crash.vehicles if v.heading}
+    for bearing in used:
+        if any(_near(leg.bearing, bearing) for leg in legs):
+            continue
+        spare = [leg for leg in legs if not any(_near(leg.bearing, one) for one in used)]
+        apart = {leg.bearing: (leg.bearing in came, abs(between(leg.bearing, bearing) - 180)) for leg in spare}
+        moved = min(spare, key=lambda leg: apart[leg.bearing], default=None)
+        if moved and len(legs) == 3:
+            legs[legs.index(moved)] = told(bearing) or moved.model_copy(update={"bearing": bearing, "skew_deg": 0})
+        elif len(legs) < _MOST_LEGS:
+            legs.append(told(bearing) or _facing(legs, bearing))
+    for bearing in _behind(facts, legs):
+        legs.append(told(bearing) or _facing(legs, bearing))
+    return layout.model_copy(update={"legs": tuple(legs)})
+
+
+def _behind(facts: RoadFacts, legs: list[Leg]) -> list[Compass]:
+    """Bearings from which a vehicle comes that drives straight on into a driveway with no road opposite."""
+    if facts.junction.kind not in (DRIVEWAY, ALLEY):
+        return []
+    ways = [v.heading for v in facts.crash.vehicles if v.heading and v.maneuver in _ONWARD and not v.origin]
+    into = [way for way in ways if any(leg.bearing == way for leg in legs)]
+    behind = [turned(way, 180) for way in into if not any(_near(leg.bearing, turned(way, 180)) for leg in legs)]
+    return list(dict.fromkeys(behind))[: _MOST_LEGS - len(legs)]
+
+
+def _near(one: Compass, other: Compass) -> bool:
+    return between(one, other) in (0, 45, 315)
+
+
+def _facing(legs: list[Leg], bearing: Compass) -> Leg:
+    """A leg that goes on from the one opposite; without one a road with a lane each way."""
+    opposite = next((leg for leg in legs if leg.bearing == turned(bearing, 180)), None)
+    if opposite is None:
+        return Leg(bearing=bearing, lanes_in=1, lanes_out=1)
+    lanes = {"lanes_in": opposite.lanes_out, "lanes_out": opposite.lanes_in}
+    return opposite.model_copy(update={"bearing": bearing, "turns_in": (), "curve": "none", **lanes})

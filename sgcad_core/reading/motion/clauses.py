@@ -62,8 +62,10 @@ def resolve_sentences(sentences: Iterable[Sentence], roster: Roster) -> tuple[St
         text = _others(text, roster, current, s.role)
         role = role_of(text) if s.role in ("other", "road") and text != s.text else s.role
         # one account in order: no vehicle is at rest for good before the contact
-        early = role in ("rest", "health") and all(t.role != "impact" for t in told)
-        before = role == "other" and _begins_with_somebody(text) and all(t.role != "impact" for t in told)
+        unmet = all(t.role != "impact" for t in told)
+        early = role in ("rest", "health") and unmet
+        stops = role == "rest" and rule("clauses.stops").search(text) and any(one.role == "impact" for one in sentences)
+        before = unmet and (stops or (role == "other" and _begins_with_somebody(text)))
         if before or (roster.counted and (early or (role == "other" and _SUBJECT.search(text)))):
             role = "approach"
         earlier, current = current, _main_subject(text, current, role, roster)

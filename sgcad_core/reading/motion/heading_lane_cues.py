@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
-from sgcad_core.reading.actors.vehicles import Roster
+from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.language import of_role, rule, values
 from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
 from sgcad_core.reading.text.compass import compass_of, turned
@@ -16,17 +16,25 @@ _FROM = rule("headings.from")
 _CAME_WAY = rule("headings.came_way")
 _EXIT = rule("headings.exit")
 _TURN_BEFORE = rule("headings.turn_before")
+_TURNS = (rule("headings.turned_to"), rule("headings.turned_onto"))
+TURNS_TO = tuple(turn.id for turn in _TURNS)
+"""Rules of turns whose way at the end is plainly told."""
 _WAYS = ("dir", "dir2", "dir3", "dir4")
 """Groups of the way in alternatives of a rule."""
 
 
 def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
     """Adds the headings and exits of a segment."""
+    for turn in _TURNS:
+        for m in turn.finditer(text):
+            _note_exit(motion, m["dir"], turn.id)
+    text = rule("headings.turned_to").sub(lambda m: " " * len(m[0]), text)
     told = [(m, by) for by in (rule("headings.heading"), rule("headings.heading_bare")) for m in by.finditer(text)]
     for m, by in sorted(told, key=lambda found: found[0].start()):
         words = m.groupdict()
         gap = words.get("gap") or words.get("gap2") or ""
-        if not rule("headings.gap_stops").search(gap) and not _TURN_BEFORE.search(text[: m.start()]):
+        faces = rule("headings.facing").search(m.group()) and not MENTION.search(gap.upper())
+        if (faces or not rule("headings.gap_stops").search(gap)) and not _TURN_BEFORE.search(text[: m.start()]):
             _note_heading(motion, next(filter(None, map(words.get, _WAYS)), ""), weight, by.id)
             if way := compass_of(words.get("dir") or ""):
                 _note_sense(motion, m, way)
@@ -46,10 +54,14 @@ def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
     for m in rule("headings.from_to").finditer(text):
         _note_origin(motion, text, m, weight, "headings.from_to")
     for m in _EXIT.finditer(text):
-        heading = compass_of(m.group("dir"))
-        if heading:
-            motion.exits.append(heading)
-            motion.read(f"exit {heading}", m.group("dir"), _EXIT.id)
+        _note_exit(motion, m["dir"], _EXIT.id)
+
+
+def _note_exit(motion: VehicleMotion, word: str, by: str) -> None:
+    heading = compass_of(word)
+    if heading and heading not in motion.exits:
+        motion.exits.append(heading)
+        motion.read(f"exit {heading}", word, by)
 
 
 def _note_origin(motion: VehicleMotion, text: str, told: re.Match[str], weight: int, by: str) -> None:
@@ -77,9 +89,9 @@ def note_headings_of_mentions(found: dict[str, VehicleMotion], text: str, weight
         if vehicle in found:
             _note_heading(found[vehicle], m["dir"] or m["dir2"] or m["dir3"], weight, _BOUND_VEHICLE.id)
     for m in rule("headings.bound_all").finditer(text):
-        many = _MANY.get((m["many"] or m["number"] or "").lower(), len(found))
+        many = _MANY.get((m["many"] or m["number"] or m["many3"] or "").lower(), len(found))
         for motion in found.values() if many == len(found) else ():
-            _note_heading(motion, m["dir"] or m["dir2"], weight, "headings.bound_all")
+            _note_heading(motion, m["dir"] or m["dir2"] or m["dir3"], weight, "headings.bound_all")
 
 
 def _note_heading(motion: VehicleMotion, word: str, weight: int, by: str) -> None:
@@ -102,15 +114,17 @@ def read_relations(motion: VehicleMotion, text: str, weight: int, vehicle: str, 
             if other not in roster.ids or other == vehicle:
                 other = None
             if relation != "same" or not word or other or not stranger:
-                motion.relations.append((weight, relation, other or roster.other(vehicle), word))
+                met = other or roster.other(vehicle)
+                motion.relations.append((weight, relation, met, word))
+                motion.read(f"{relation} {met}", m[0], told.id)
 
 
 # ------------------------------------------------------------------ lane, access
 _LANE = rule("surroundings.lane")
 
 
-def read_lane(motion: VehicleMotion, text: str) -> None:
-    """Sets the first told lane, by number or by word."""
+def read_lane(motion: VehicleMotion, text: str, from_median: bool = False) -> None:
+    """Sets the first told lane, by number or by word; `from_median`: "the number 1 lane" is the leftmost one."""
     if motion.lane or motion.lane_word:
         return
     for m in _LANE.finditer(text):
@@ -118,6 +132,9 @@ def read_lane(motion: VehicleMotion, text: str) -> None:
             text[: m.start()]
         ):
             continue
+        center = _center_lane(text, m)
+        if center is not None and not rule("surroundings.in_lane").search(text[: center.start()]):
+            continue  # of the road: "a five-lane road with a center turn lane"
         number = m.group("n") or m.group("num")
         nth = m.group("nth") or m.group("nth2")
         if nth:
@@ -125,6 +142,8 @@ def read_lane(motion: VehicleMotion, text: str) -> None:
             motion.lane = counted if (m.group("from") or m.group("from2")).lower() == "right" else -counted
         elif number:
             motion.lane = NUMBERS.get(number.lower()) or (int(number) if number.isdigit() else None)
+            if from_median and m.group("num") and motion.lane:
+                motion.lane = -motion.lane
         elif m.group("beside") or m.group("curb"):
             motion.lane = -1 if (m.group("beside") or "").lower() == "left" else 1
         elif m.group("inner"):
@@ -132,19 +151,28 @@ def read_lane(motion: VehicleMotion, text: str) -> None:
         elif m.group("ord"):
             motion.lane = values("ordinal")[m.group("ord").lower()]
         else:
-            motion.lane_word = _lane_word(m)
+            motion.lane_word = "center_turn" if center else _lane_word(m)
         motion.read("lane", m.group(), _LANE.id)
         return
 
 
+_LEFT_WORDS = ("far left", "left-most", "leftmost", "left", "inside", "passing", "inner")
+
+
+def _center_lane(text: str, m: re.Match[str]) -> re.Match[str] | None:
+    """The words of a two-way left-turn lane of which those of a lane are part."""
+    found = rule("lanes.center_turn").finditer(text)
+    return next((c for c in found if c.start() < m.end() and m.start() < c.end()), None)
+
+
 def _lane_word(m: re.Match[str]) -> str:
-    """left, right, middle, left_turn or right_turn."""
-    word = m.group("word").lower()
+    """left, right, middle, left_turn or right_turn; of a two-way left-turn lane `_center_lane` knows."""
+    word = (m.group("word") or m.group("place")).lower()
     if m.group("turn") and word in ("left", "right", "center"):
         return "left_turn" if word != "right" else "right_turn"
     if word in ("middle", "center"):
         return "middle"
-    return "left" if word in ("far left", "left-most", "leftmost", "left", "inside", "passing", "inner") else "right"
+    return "left" if word in _LEFT_WORDS else "right"
 
 
 _ORIGIN = rule("surroundings.origin")
@@ -155,8 +183,13 @@ _RAMP = rule("surroundings.ramp")
 _SHOULDER = rule("surroundings.shoulder")
 
 
-def read_origin_and_target(motion: VehicleMotion, text: str) -> None:
-    """Sets the driveway, lot, ramp or shoulder that the vehicle came from or turned into."""
+def read_origin_and_target(motion: VehicleMotion, text: str, after: bool = False) -> None:
+    """Sets the driveway, lot, ramp or shoulder that the vehicle came from or turned into.
+
+    Behind the impact (`after`) a shoulder that it goes to is no origin.
+    """
+    if after:
+        text = rule("surroundings.pulled_over").sub(" ", text)
     origin = _ORIGIN.search(text)
     if motion.origin is None and (found := _came_from(text, origin)):
         motion.origin, words, by = found

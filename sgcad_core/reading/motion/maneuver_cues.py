@@ -60,7 +60,7 @@ def read_maneuver_cues(motion: VehicleMotion, text: str, weight: int, number: in
             continue
         led = before + text[m.start() : m.start(told) if told else m.start()]
         begun = rule("deeds.try").search(before[-14:]) or rule("deeds.begins").search(led)
-        later = _LATER.search(before) and not begun
+        later = rule("deeds.not_yet_begun").search(before) or (_LATER.search(before) and not begun)
         segment.add(("want_" if later else "") + f"turn_{side}", m, _TURNING.id)
     _read_turn_to(segment)
     told_now = of_role("deed_now") if motion.ordered else ()
@@ -100,8 +100,9 @@ def _read_from_onto(segment: _Segment) -> None:
         start, end = compass_of(m["from"]), compass_of(m["onto"])
         side = _BY_ANGLE.get(between(start, end)) if start and end else None
         told = any(d.number == segment.number and d.kind.endswith(f"turn_{side}") for d in segment.motion.cues)
+        stands = any(d.kind == "stopped" and d.number == segment.number for d in segment.motion.cues)
         if side and not told:
-            segment.add(f"turn_{side}", m, "deeds.from_onto")
+            segment.add(f"{'want_' if stands else ''}turn_{side}", m, "deeds.from_onto")
 
 
 def _read_turn_to(segment: _Segment) -> None:
@@ -124,7 +125,7 @@ def _read_turn_to(segment: _Segment) -> None:
 def _note_cue(segment: _Segment, cue: Rule, m: re.Match[str]) -> None:
     kind, motion = cue.yields["deed"], segment.motion
     if kind == "from_side":
-        motion.from_side = "left" if m.group("fromside").lower() == "left" else "right"
+        motion.from_side = "left" if (m["fromside"] or m["streetside"]).lower() == "left" else "right"
     elif kind == "into_lane":
         entered = compass_of(m.group("bound"))
         own = motion.headings[0][1] if motion.headings else None

@@ -54,6 +54,13 @@ _STANDING = ("stopped", "parked")
 _CHANGES: tuple[Maneuver, ...] = ("lane_change_left", "lane_change_right")
 _SHIFTS: dict[str, Maneuver] = {"shifted_left": "lane_change_left", "shifted_right": "lane_change_right"}
 """Moves aside: a lane change of any vehicle but the report's own, which moves aside to make room."""
+_OUT_OF_LANE: dict[str, Maneuver] = {
+    "departed_lane_left": "lane_change_left",
+    "departed_lane_right": "lane_change_right",
+}
+"""Out of the own lane: a change of lane, unless what is met there comes the other way."""
+INTO_LANE_OF = "near_deeds.into_lane_of"
+OUT_OF_LANE_LEFT = "deeds.departed_lane_left"
 SHIFTED = tuple(f"deeds.{kind}" for kind in _SHIFTS)
 """Rules of such moves: the hand is told, that it is a change of lane is not."""
 _MOVING = (
@@ -213,18 +220,6 @@ def meant_turn(motion: VehicleMotion) -> Decision | None:
     return _as_told(max(wants, key=lambda d: d.weight)) if wants else None
 
 
-def started_from_stop(motion: VehicleMotion, maneuver: Maneuver) -> bool:
-    """Whether a vehicle that goes on, turns or merges is told to have stood right before."""
-    if maneuver not in ("straight", "merge", "turn_left", "turn_right", "u_turn"):
-        return False
-    onward = [d for d in motion.cues if d.kind in ("moved_on", "straight", "turn_left", "turn_right", "u_turn")]
-    return any(d.kind == "stopped" and _moved_behind(d, onward) for d in motion.cues)
-
-
-def _moved_behind(stop: ManeuverCue, onward: list[ManeuverCue]) -> bool:
-    return any(stop.number <= d.number <= stop.number + 1 for d in onward)
-
-
 def _over_the_line(motion: VehicleMotion, cue: ManeuverCue) -> Decision:
     """Over a lane line: beside a vehicle that drives the same way it is a change of lane."""
     left = cue.kind == "code:over_left"
@@ -251,6 +246,9 @@ def _moving(motion: VehicleMotion, least: int) -> Decision:
     for over in ("code:over_left", "code:over_right"):
         if (cue := motion.cue(over)) and not motion.has_cue("code:straight"):
             return _over_the_line(motion, cue)
+    for out, change in _OUT_OF_LANE.items():
+        if cue := motion.cue(out, 3):
+            return Decision(change, cue=cue)
     if cue := motion.cue("lane_change", 3):
         return Decision("lane_change_left", False, cue)
     if cue := motion.cue("negotiating_curve", 3):

@@ -38,6 +38,8 @@ def read_motions(
         _read_part(found[identity.id], identity, roster)
     impact = min((t.number for t in statements if t.role == "impact"), default=len(statements))
     impact = struck_at if roster.counted and struck_at is not None else impact
+    texts = {t.number: t.text for t in statements}
+    from_median = _counts_from_median(texts.values(), roster)
     contact_sentence = next((t for t in statements if t.number == impact), None) if roster.counted else None
     for segment in segments:
         if segment.role in _UNREAD or (contact_sentence and _behind(contact_sentence, segment)):
@@ -49,7 +51,10 @@ def read_motions(
             late = after and bool(motion.headings or motion.cues)
             if late and roster.counted:
                 continue
-            _read(motion, segment, vehicle, roster, 2 if late else 4, after)
+            most = 2 if late else 4
+            _read(motion, segment, vehicle, roster, most, after, from_median)
+            before = texts.get(segment.number, "")[: segment.at]
+            read_speed(motion, segment.text, _weight(segment, most), before)
     for t in statements:
         for motion in found.values():
             motion.at = t.number
@@ -62,6 +67,17 @@ def read_motions(
     for motion in found.values():
         _hear_interview(motion)
     return found
+
+
+def _counts_from_median(texts: Iterable[str], roster: Roster) -> bool:
+    """Whether "the number 1 lane" is the leftmost one, as police in the U.S. count.
+
+    Reports of NHTSA's investigators count from the right curb in these words too. They number vehicles, never name a
+    road, and have words of their own.
+    """
+    told = tuple(texts)
+    named = roster.counted or any(rule("street_names.numbered").search(text) for text in told)
+    return named or not any(rule("motion_reader.counts_from_curb").search(text) for text in told)
 
 
 def _hear_interview(motion: VehicleMotion) -> None:
@@ -89,20 +105,25 @@ def _read_part(motion: VehicleMotion, identity: VehicleDescription, roster: Rost
         motion.relations.append((4, "opposite" if part == "opposite" else "same", roster.ids[0], part))
 
 
-def _read(motion: VehicleMotion, segment: Segment, vehicle: str, roster: Roster, most: int, after: bool) -> None:
+def _read(
+    motion: VehicleMotion, segment: Segment, vehicle: str, roster: Roster, most: int, after: bool, from_median: bool
+) -> None:
     """`most`: the highest weight; what is told again behind the impact (`after`) is another witness."""
     text = _until_stopped(rule("motion_reader.brackets").sub(" ", segment.text), after)
     if motion.ordered:
         text = rule("motion_reader.strangers").sub(lambda m: " " * len(m[0]), text)
-    weight = min(_WEIGHT.get(segment.role, 1), most)
+    weight = _weight(segment, most)
     before_hit = _until_hit(text) if segment.role != "rest" else _until_rest(text)
     read_heading(motion, before_hit, weight)
     read_maneuver_cues(motion, before_hit, weight, segment.number, segment.at)
     read_relations(motion, before_hit, weight, vehicle, roster)
     if segment.role != "rest":
-        read_lane(motion, before_hit)
-        read_origin_and_target(motion, before_hit)
-    read_speed(motion, segment.text, weight)
+        read_lane(motion, before_hit, from_median)
+        read_origin_and_target(motion, before_hit, after)
+
+
+def _weight(segment: Segment, most: int) -> int:
+    return min(_WEIGHT.get(segment.role, 1), most)
 
 
 def _until_stopped(text: str, after: bool) -> str:

@@ -61,7 +61,7 @@ def _add_relations(score: dict[int, float], crash: CrashTold, a: str, b: str) ->
         side = crash.motions[me].from_side
         if side:
             quarter = 270 if (side == "left") == (sign == 1) else 90
-            score[quarter] += 1.5
+            score[quarter] += 3.0
 
 
 def _add_maneuvers(score: dict[int, float], crash: CrashTold, inferred: CrashInferred, a: str, b: str) -> None:

@@ -16,6 +16,7 @@ from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
 from sgcad_core.reading.motion.maneuvers import meant_turn
 from sgcad_core.reading.motion.motion_record import Source, WeightedValue
+from sgcad_core.reading.text.compass import between
 from sgcad_core.reading.text.normalise import Sentence
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.facts import Fact, Value
@@ -144,8 +145,8 @@ def _motion(builder: FactBuilder, v: VehicleFacts, read: StageResults) -> Iterat
         if place is not None:
             yield builder.stated(f"{at}.{name}", place, motion.sources.get(name))
     if v.from_stop:
-        stop = motion.cue("stopped")
-        yield builder.inferred(f"{at}.from_stop", True, "maneuvers.started_from_stop", stop.source if stop else None)
+        stop = motion.cue("stopped") or motion.cue("parked")
+        yield builder.stated(f"{at}.from_stop", True, stop.source if stop else None)
 
 
 def _heading(builder: FactBuilder, v: VehicleFacts, read: StageResults) -> Iterator[Fact]:
@@ -158,7 +159,23 @@ def _heading(builder: FactBuilder, v: VehicleFacts, read: StageResults) -> Itera
     elif v is first and not read.crash.oriented:
         yield default(field, v.heading, "the first vehicle heads along its road, north if none is told")
     else:
-        yield builder.inferred(field, v.heading, "relative.heading")
+        source = read.inferred.sources.get(f"{v.id} heading") or _told_beside(v, read)
+        yield builder.inferred(field, v.heading, "relative.heading", source)
+
+
+def _told_beside(v: VehicleFacts, read: StageResults) -> Source | None:
+    """The words that tell a vehicle to drive the way of another one, or the opposite one, if it is read so."""
+    motions = read.crash_told.motions
+    if v.maneuver == "merge" and (joined := motions[v.id].sources.get(f"exit {v.heading}")):
+        return joined
+    for other in read.crash.vehicles:
+        if other.id == v.id or other.heading is None or v.heading is None:
+            continue
+        relation = {0: "same", 180: "opposite"}.get(between(other.heading, v.heading))
+        for me, you in ((v.id, other.id), (other.id, v.id)):
+            if relation and (source := motions[me].sources.get(f"{relation} {you}")):
+                return source
+    return None
 
 
 def _differ(heard: Sequence[WeightedValue], slack: int = 0) -> bool:
@@ -231,6 +248,8 @@ def course_provenance(builder: FactBuilder, crash: CrashTold) -> Iterator[Fact]:
         for name, value, told_as in _course_values(course):
             source = crash.course.sources.get(f"{vehicle} {told_as}")
             yield builder.stated(f"vehicles.{vehicle}.{name}", value, source)
+    if (event := crash.untouched) is not None:
+        yield builder.stated(f"vehicles.{event.vehicle}.event", event.kind, event.source)
     for number, (impact, source) in enumerate(crash.impacts):
         for name in ("actor", "other", "actor_area", "other_area"):
             if (told := getattr(impact, name)) is not None:

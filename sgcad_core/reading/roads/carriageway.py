@@ -15,6 +15,8 @@ from sgcad_core.records.specs import Compass
 
 MOST = 7
 """Lanes in one direction; more is a misreading."""
+FEW = 3
+"""Lanes of a divided road that are told of one carriageway: both halves have four at least."""
 
 
 @dataclass(frozen=True)
@@ -42,18 +44,28 @@ class Carriageway:
 
 
 def carriageway(
-    facts: LaneFacts, axis: Compass, lead: Compass, used: Mapping[Compass, int], default: int = 1
+    facts: LaneFacts,
+    axis: Compass,
+    lead: Compass,
+    used: Mapping[Compass, int],
+    default: int = 1,
+    *,
+    numbered: bool = False,
+    against: bool = False,
 ) -> Carriageway:
     """Lanes by direction of a road on `axis`.
 
     `lead`: the direction that vehicles travel in (of a one-way road, and the wider one of an odd number).
     `used`: travel direction -> the highest lane that a vehicle is told to be in. `default`: lanes each way
-    where nothing is stated.
+    where nothing is stated. `numbered`: a vehicle is in a lane with a number, as of one carriageway. `against`:
+    vehicles are told to drive both ways, on a one-way road too: one of its lanes is then for the wrong way.
     """
     ends = (lead, turned(lead, 180))
     facts = _placed_turns(facts, ends)
     if facts.one_way:
-        return _one_way(facts, facts.one_way_toward if facts.one_way_toward in ends else lead, used)
+        return _one_way(facts, facts.one_way_toward if facts.one_way_toward in ends else lead, used, against)
+    if _of_one_carriageway(facts, max(used.values(), default=1), numbered):
+        facts = replace(facts, total=None, each_way=facts.total)
     ways = _two_way(facts, ends, used, default)
     stated = bool(facts.total or facts.each_way or facts.toward)
     return Carriageway(ways, facts.center_turn_lane or _hidden_center(facts, ends), facts.total, stated)
@@ -70,10 +82,13 @@ def _placed_turns(facts: LaneFacts, ends: tuple[Compass, Compass]) -> LaneFacts:
     return replace(facts, turns=turns)
 
 
-def _one_way(facts: LaneFacts, toward: Compass, used: Mapping[Compass, int]) -> Carriageway:
+def _one_way(facts: LaneFacts, toward: Compass, used: Mapping[Compass, int], against: bool = False) -> Carriageway:
     count = facts.toward.get(toward) or facts.total or facts.each_way or 1
     count = max(count, 1 if facts.total else used.get(toward, 1))
-    return Carriageway({toward: _way(facts, toward, count)}, total=count, stated=True)
+    if not against:
+        return Carriageway({toward: _way(facts, toward, count)}, total=count, stated=True)
+    ways = {toward: _way(facts, toward, max(1, count - 1)), turned(toward, 180): DirectionLanes(1, 1)}
+    return Carriageway(ways, total=max(2, count), stated=True)
 
 
 def _way(facts: LaneFacts, toward: Compass, approach: int) -> DirectionLanes:
@@ -137,15 +152,23 @@ def _other_side(facts: LaneFacts, ends: tuple[Compass, Compass], told: dict[Comp
 
 
 def _split(facts: LaneFacts, ends: tuple[Compass, Compass]) -> dict[Compass, DirectionLanes]:
-    """A total over both directions. Of an odd one the spare lane is a turn lane of each approach.
-
-    Of a divided road "three-lane" can only be meant of one carriageway.
-    """
+    """A total over both directions. Of an odd one the spare lane is a turn lane of each approach."""
     total = min(facts.total or 2, 2 * MOST)
     half = max(1, total // 2)
-    if facts.divided and total in (1, 3) and not facts.center_turn_lane:
-        return {way: _way(facts, way, total) for way in ends}
     if total % 2 and total > 1 and not facts.center_turn_lane:
         spare = [way for way in ends if _turn_lanes(facts, way)] or list(ends)
         return {way: DirectionLanes(half + 1, half, 1) if way in spare else DirectionLanes(half, half) for way in ends}
     return {way: _way(facts, way, half + _turn_lanes(facts, way)) for way in ends}
+
+
+def _of_one_carriageway(facts: LaneFacts, used: int, numbered: bool) -> bool:
+    """Whether a total is that of one half of a divided road: of two or three lanes always; of more where a vehicle is
+    in a lane that half of them would not have, or in a numbered one of a road that is not told to be two-way.
+
+    In coded reports of the last kind four of five totals are those of one half.
+    """
+    total = facts.total or 0
+    if not facts.divided or facts.center_turn_lane or facts.each_way or facts.toward or facts.turns or total > MOST:
+        return False
+    both = facts.one_way is False or facts.median == "grass" or not numbered
+    return total <= FEW or used > (total + 1) // 2 or not both

@@ -70,6 +70,8 @@ _OWN = rule("lanes.own")
 # ------------------------------------------------------------------ lane items
 
 
+MOST_ONE_WAY = 8
+"""Lanes in one direction; a greater number is a route's or a mile post's."""
 _NUMBERED_TURN = rule("lanes.numbered_turn")
 
 
@@ -106,7 +108,7 @@ def lane_facts(text: str) -> LaneFacts:
         one_way=one_way if one_way != two_way else None,
         one_way_toward=_one_way_toward(text) if alone else None,
         center_turn_lane="CENTERLANE" in marked, median=median, divided=divided,
-        one_lane=bool(rule("lanes.one_lane").search(text)), own=number(own[1]) if own else None,
+        one_lane=bool(rule("lanes.one_lane").search(text)), own=number(own[1] or own[2]) if own else None,
     )  # fmt: skip
 
 
@@ -120,7 +122,7 @@ def _numbered_turns(text: str, toward: dict[str, int], turns: dict[str, tuple[Si
 
 def _total(text: str, counted: str, items: list[_Item], known: list[Compass | None], one_way: bool) -> int | None:
     """ "four-lane", else the one number of lanes that no direction claims ("consists of four lanes")."""
-    said = [number(n) for n in _TOTAL.findall(text)]
+    said = [n for n in map(number, _TOTAL.findall(text)) if n <= 2 * MOST_ONE_WAY]
     if said:
         return said[0]
     crossed = rule("lanes.crossed")
@@ -144,6 +146,8 @@ def _items(text: str) -> Iterator[_Item]:
         behind = match["behind1"] or match["behind2"] or match["bare"] or (word[0] if word else None)
         turn = _turn(mods, match["turn"])
         sure = count.lower() not in ("a", "an", "the")
+        if number(count) > MOST_ONE_WAY:
+            continue
         if not sure and not turn:
             continue
         plain = not turn and not rule("lanes.no_plain_lane").search(mods)

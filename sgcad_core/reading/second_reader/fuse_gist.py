@@ -1,18 +1,13 @@
 """A second reader's opinion beside the rules', and which of both is taken, field by field.
 
-Where both readers agree that is the answer. Where they differ, the model's value is right with the probability
-
-    sigmoid(differ + slope * logit(p) + told * [the text tells the rules' value outright])
-
-with p the model's probability of its value, and it is taken from one half on. Where the rules have nothing it is taken
-from `FILLS` on, below that nothing is said. Three figures a field, fitted on reports whose codes are known and which
-are never scored (`python -m research.benchmarks.texts.fuse_weights`); the logistic form is Platt's (1999),
-"Probabilistic outputs for support vector machines". Knows facts; no model.
+Where both readers agree that is the answer. Where they differ, `sgcad_core.reading.second_reader.combiner` says how
+likely the model's value is right, and it is taken from one half on. Where the rules have nothing it is taken from
+`FILLS` on, below that nothing is said. Three figures a field, fitted on reports whose codes are known and which are
+never scored (`python -m research.benchmarks.texts.fuse_weights`). Knows facts; no model.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, cast
@@ -21,6 +16,7 @@ from sgcad_core.kinds import ACTORS, FOUR_LEG, Maneuver
 from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
+from sgcad_core.reading.second_reader.combiner import FILLS, model_right
 from sgcad_core.reading.second_reader.seven_question_gist import (
     FIELDS,
     SUBJECT,
@@ -32,17 +28,13 @@ from sgcad_core.reading.second_reader.seven_question_gist import (
 )
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.facts import Value as FactValue
-from sgcad_core.records.second_reader import MOST_NATS, Opinion, Value, Weights
+from sgcad_core.records.second_reader import Opinion, Value
 from sgcad_core.records.specs import Area
 
 if TYPE_CHECKING:
     from sgcad_core.reading.reading import Reading
     from sgcad_core.reading.second_reader.seven_question_gist import RuleValues
 
-FILLS = 0.6
-"""From which probability on a value stands where the rules have none; of answers to the whole report also where they
-have one, since the rules name the sentence of each value."""
-_EDGE = 1e-6
 _PARTNER = "V2"
 TURNS = ("turn_left", "turn_right", "u_turn")
 
@@ -71,25 +63,6 @@ def decide(opinion: Opinion, say: RuleValues) -> dict[str, Decided]:
             p = model_right(weights, heard.p, told=key in say.told)
             found[key] = Decided(heard.value, p, True) if p >= opinion.takes else Decided(rule, 1 - p, False)
     return found
-
-
-def terms(p: float, told: float, nats: float = 0.0, tells: float = 0.5) -> tuple[float, ...]:
-    """What weights multiply, in the order differ, slope, told, nats, tells: 1, logit of p, told, bounded grounding,
-    bounded logit of tells."""
-    most = MOST_NATS
-    return 1.0, _logit(p), float(told), min(max(nats, 0.0), most), min(max(_logit(tells), -most), most)
-
-
-def _logit(p: float) -> float:
-    p = min(max(p, _EDGE), 1 - _EDGE)
-    return math.log(p / (1 - p))
-
-
-def model_right(weights: Weights, p: float, told: float, nats: float = 0.0, tells: float = 0.5) -> float:
-    """Probability that a model's value is right that the rules do not share; `told`: whether the text tells the rules'
-    value outright; `nats`: the value's grounding; `tells`: how likely the evidence tells it, by the model's head."""
-    factors = (weights.differ, weights.slope, weights.told, weights.nats, weights.tells)
-    return 1 / (1 + math.exp(-sum(a * b for a, b in zip(factors, terms(p, told, nats, tells), strict=True))))
 
 
 # ------------------------------------------------------------------ taken over

@@ -1,9 +1,9 @@
 """A reading of a numbered report with what a model's answer to the whole report knows better, field by field.
 
 Rules and model make different errors: the rules miss wordings, the model's values are sometimes those of another
-sentence. Where both agree that is the value. Where they differ, or the rules have none, `fuse_gist.model_right` says
-how likely the model is right, from the model's probability and from whether the text tells the rules' value outright;
-its figures are fitted on reports that are not scored (`python -m research.benchmarks.texts.outside --fit`). A road is
+sentence. Where both agree that is the value. Where they differ, or the rules have none,
+`sgcad_core.reading.second_reader.combiner` says how likely the model is right; its figures are fitted on reports that
+are not scored (`research.benchmarks.texts.coded_fusion`, of fields that no code judges `.outside`). A road is
 then laid out with the model's legs or lanes only if every actor can drive on it as read. Every value that is taken is a
 fact of the basis "model".
 """
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
 from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, T, actor_kind
@@ -24,8 +25,10 @@ from sgcad_core.reading.roads.lanes import LaneFacts
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts, uncounted
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.second_reader.answered_values import TakenValue, as_taken, controlled, facts_of, model_claims
+from sgcad_core.reading.second_reader.combiner import FILLS, model_right, needed
 from sgcad_core.reading.second_reader.field_claims import Claim, Claims, kind_of, rules_claim, vehicles_of
-from sgcad_core.reading.second_reader.fuse_gist import FILLS, TURNS, model_right
+from sgcad_core.reading.second_reader.fuse_numbered import moved
+from sgcad_core.reading.second_reader.learned_support import support_of
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.specs import Area, Compass, RoadLayout
 
@@ -52,7 +55,8 @@ def fused_with_answer(reading: Reading, opinion: Opinion) -> Reading:
         if reading.crash.gap is not None:
             return reading
     rules = rules_claim(reading)
-    taken = fitting(decided(rules, heard, opinion.weights, opinion.takes), rules, heard)
+    support = support_of(reading.crash, rules, heard, opinion.guesses)
+    taken = fitting(decided(rules, heard, opinion.weights, opinion.takes, support), rules, heard)
     crash, used = _crash(reading.crash, taken)
     roads, laid = _roads(replace(reading.roads, crash=crash), taken, opinion.answered)
     if not (used | laid):
@@ -102,15 +106,23 @@ def _told(reading: Reading, crash: CrashFacts, roads: RoadFacts, facts: Sequence
     return replace(reading, crash=crash, roads=replace(roads, crash=crash), facts=(*kept, *facts))
 
 
-def decided(rules: Claims, model: Claims, weights: Mapping[str, Weights], takes: float) -> dict[str, TakenValue]:
-    """The model's values that are taken: not those that both have, and none of a kind without weights."""
+def decided(
+    rules: Claims,
+    model: Claims,
+    weights: Mapping[str, Weights],
+    takes: float,
+    support: Mapping[str, float] = MappingProxyType({}),
+) -> dict[str, TakenValue]:
+    """The model's values that are taken: not those that both have, and none of a kind without weights; `support`: how
+    much likelier than the rules' value the learned reader holds them."""
     found = {}
     for key, said in model.items():
         weight, rule = weights.get(kind_of(key)), rules.get(key)
         if weight is None or (rule is not None and agree(key, rule, said)):
             continue
-        p = model_right(weight, said.p, rule.told if rule is not None else 0.0, said.nats, said.told)
-        if p >= (takes if rule is not None else FILLS):
+        told = None if rule is None else rule.told
+        p = model_right(weight, said.p, told or 0.0, said.nats, said.told, learned=support.get(key, 0.0))
+        if p >= needed(takes, told):
             found[key] = as_taken(said, p)
     return found
 
@@ -220,15 +232,9 @@ def _met(crash: CrashFacts, taken: Mapping[str, TakenValue]) -> tuple[tuple[Cont
     return ((first, *rest), used) if used else None
 
 
-def _moved(v: VehicleFacts, maneuver: Any) -> VehicleFacts:
-    """With another maneuver; where it was to turn to belongs to the maneuver before."""
-    moved = replace(v, maneuver=maneuver, maneuver_stated=True, from_stop=False)
-    return moved if maneuver in TURNS else replace(moved, exit_heading=None, meant=None)
-
-
 _VEHICLE: Mapping[str, Callable[[VehicleFacts, Any], VehicleFacts]] = {
     "kind": lambda v, kind: replace(v, kind=kind),
-    "maneuver": _moved,
+    "maneuver": moved,
     "heading": lambda v, way: replace(v, heading=way, heading_stated=True),
     "exit": lambda v, way: replace(v, exit_heading=way),
     "lane": lambda v, lane: replace(v, lane=lane, lane_word=None),

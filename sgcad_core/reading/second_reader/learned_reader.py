@@ -9,8 +9,8 @@ that it is right where only one of both is has the probability
 
 and the rules' own value is right with sigmoid(keep . (1, logit of the first reader, logit of the second)). Of a text in
 which too few runs of words are known nothing is said: it is of another sort than those learned from. The weights
-(`learned.npz`, made by `python -m research.training.train_learned_reader`) hold hashes of features, no words. Knows no
-model server.
+(`learned.npz`, made by `python -m research.training.readers.train_learned_reader`) hold hashes of
+features, no words. Knows no model server.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from __future__ import annotations
 import json
 import math
 import zlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,7 @@ WORDS_NORM, READING_WEIGHT = 10.0, 2.0
 _EDGE = 1e-4
 _TAKEN_AS_IT_IS = Weights(differ=0.0, slope=1.0, told=0.0, agree=None)
 Floats = NDArray[np.float64]
+T = TypeVar("T")
 
 
 class Field(NamedTuple):
@@ -165,10 +166,35 @@ def save(learned: Learned, file: Path) -> None:
     arrays: dict[str, Any] = {"word_hashes": learned.word_hashes, "reading_hashes": learned.reading_hashes}
     about: dict[str, Any] = {"takes": learned.takes, "least_known": learned.least_known, "fields": {}}
     for key, field in learned.fields.items():
-        for name in _ARRAYS:
-            arrays |= _packed(f"{key}.{name}", getattr(field, name))
+        arrays |= arrays_of(key, field)
         about["fields"][key] = {"values": field.values, "change": field.change, "keep": field.keep}
+    keep(about, arrays, file)
+
+
+def keep(about: Mapping[str, Any], arrays: Mapping[str, Any], file: Path) -> None:
+    """Write a file of weights: arrays by name, and what JSON holds of them."""
     np.savez_compressed(file, about=np.frombuffer(json.dumps(about).encode(), dtype=np.uint8), **arrays)
+
+
+def opened(file: Path, reader: str, wanted_by: str, trainer: str, build: Callable[[Any, dict[str, Any]], T]) -> T:
+    """What `build` makes of a kept file's JSON and arrays. Raises ConfigError where it is missing or something else."""
+    remedy = f"make it with `{trainer}`"
+    if not file.is_file():
+        raise ConfigError(f"{wanted_by}: its file of weights {file} is missing; {remedy}")
+    try:
+        with np.load(file) as kept:
+            arrays = dict(kept)
+        return build(json.loads(arrays["about"].tobytes()), arrays)
+    except (ValueError, KeyError, TypeError, OSError) as fault:
+        raise ConfigError(f"{file}: is not a file of weights for the {reader} ({fault}); {remedy}") from fault
+
+
+def arrays_of(key: str, field: Field) -> dict[str, Any]:
+    """A field's weights as 8-bit numbers, by names that begin with its key."""
+    arrays: dict[str, Any] = {}
+    for name in _ARRAYS:
+        arrays |= _packed(f"{key}.{name}", getattr(field, name))
+    return arrays
 
 
 def _packed(name: str, values: Floats) -> dict[str, Any]:
@@ -181,22 +207,24 @@ def _packed(name: str, values: Floats) -> dict[str, Any]:
 @lru_cache(maxsize=2)
 def load(file: Path = WEIGHTS) -> Learned:
     """The weights of a file. Raises ConfigError where it is missing or holds something else."""
-    remedy = "make it with `python -m research.training.train_learned_reader`"
-    if not file.is_file():
-        raise ConfigError(f"second_opinion {LEARNED!r}: its file of weights {file} is missing; {remedy}")
-    try:
-        with np.load(file) as kept:
-            arrays = dict(kept)
-        about = json.loads(arrays["about"].tobytes())
-        fields = {key: _field(arrays, key, one) for key, one in about["fields"].items()}
-        return Learned(
-            arrays["word_hashes"], arrays["reading_hashes"], fields, float(about["takes"]), float(about["least_known"])
-        )
-    except (ValueError, KeyError, TypeError, OSError) as fault:
-        raise ConfigError(f"{file}: is not a file of weights for the learned reader ({fault}); {remedy}") from fault
+    return opened(
+        file,
+        "learned reader",
+        f"second_opinion {LEARNED!r}",
+        "python -m research.training.readers.train_learned_reader",
+        _learned,
+    )
 
 
-def _field(arrays: Mapping[str, Any], key: str, about: Mapping[str, Any]) -> Field:
+def _learned(about: Any, arrays: dict[str, Any]) -> Learned:
+    fields = {key: field_of(arrays, key, one) for key, one in about["fields"].items()}
+    hashes = arrays["word_hashes"], arrays["reading_hashes"]
+    return Learned(*hashes, fields, float(about["takes"]), float(about["least_known"]))
+
+
+def field_of(arrays: Mapping[str, Any], key: str, about: Mapping[str, Any]) -> Field:
+    """A field's weights from the arrays of its key; `about`: its values and the judge's figures."""
+
     def weights(name: str) -> Floats:
         found: Floats = arrays[f"{key}.{name}"].astype(np.float64) * arrays.get(f"{key}.{name}.scale", 1.0)
         return found

@@ -38,6 +38,7 @@ def plain(statement: Statement, roster: Roster) -> str:
     text = rule("zones.of_trailer").sub(r"of \1", text)
     text = rule("zones.opened_door").sub(r"\g<told>the \g<door> of \g<v>", text)
     text = rule("zones.possessive").sub(lambda m: f"the {m['area']} of {m['v']}", text)
+    text = rule("zones.apposed").sub(r"the \g<area> of \g<v>", text)
     text = rule("zones.bare_possessive").sub(r"the \g<area> of \g<v>", text)
     if statement.subject:
         text = rule("zones.area_of_the_vehicle").sub(rf"\g<area> of {statement.subject}", text)

@@ -9,11 +9,14 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from sgcad_core.reading.actors.numbered_walkers import called_by_word
+from sgcad_core.reading.actors.part_numbers import number_the_rest
 from sgcad_core.reading.actors.references import number_actors, number_cyclists, number_parked
 from sgcad_core.reading.language import of_role, rule, values
 from sgcad_core.reading.text.report_styles import in_third_person, named_in_full
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, Role, role_of
 from sgcad_core.reading.text.traced_text import TracedText, joined
+from sgcad_core.reading.text.typos import mended
 
 __all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalised", "normalize", "sentences", "split_sentences"]
 NUMBERS: dict[str, int] = values("number_word")
@@ -72,7 +75,7 @@ def _blocks(text: TracedText) -> list[TracedText]:
 
 
 def _paragraph(block: TracedText) -> TracedText:
-    once = _spell(block)
+    once = _spell(mended(_spaces(block)))
     for _ in range(4):
         again = _spell(once)
         if again.text == once.text:
@@ -125,7 +128,9 @@ def sentences(text: str) -> tuple[Sentence, ...]:
 def split_sentences(text: TracedText) -> tuple[Sentence, ...]:
     """The sentences of a normalized text; actors without a number get one."""
     found: list[Sentence] = []
-    numbered = number_parked(number_cyclists(number_actors(named_in_full(in_third_person(text)))))
+    full = named_in_full(in_third_person(called_by_word(text)))
+    numbered = number_parked(number_cyclists(number_actors(number_the_rest(full))))
+    numbered = numbered.sub(rule("text.mode_of_driving"), "")
     blocks = [block for block in numbered.split_at("\n\n") if block.text]
     for number, block in enumerate(blocks):
         for piece in _split(block):

@@ -33,9 +33,9 @@ class Speed(NamedTuple):
 _BARE = rule("speeds.bare")
 
 
-def speeds(text: str) -> Iterator[Speed]:
+def speeds(text: str, before: str = "") -> Iterator[Speed]:
     """Speeds that are no limits, those in mph first, then those in km/h, then numbers without a unit."""
-    of_limit = bool(rule("surroundings.limit").search(text))
+    of_limit = any(rule("surroundings.limit").search(words) for words in (before, text))
     for pattern, factor in ((rule("surroundings.speed"), 1.0), (rule("surroundings.kmph"), MILES), (_BARE, 1.0)):
         for m in pattern.finditer(text):
             if not of_limit or pattern is _BARE or rule("speeds.driven").search(text[: m.start()]):
@@ -47,9 +47,10 @@ def _mph(m: re.Match[str], factor: float) -> int:
     return round(min(FASTEST_MPH, (float(m.group("a")) + float(high)) / 2 * factor))
 
 
-def read_speed(motion: VehicleMotion, text: str, weight: int) -> None:
-    """The first speed of a segment."""
-    if found := next(speeds(text), None):
+def read_speed(motion: VehicleMotion, text: str, weight: int, before: str = "") -> None:
+    """The first speed of a segment; `before`: its sentence up to there, which may speak of a limit."""
+    struck = _of_striker(before, text)
+    if not struck and (found := next(speeds(text, before), None)):
         motion.add_value(motion.speeds_mph, weight, found.mph, found.words, found.rule)
 
 
@@ -83,8 +84,15 @@ def _owned(statement: Statement) -> Iterator[tuple[str, Speed]]:
             yield statement.subject, speed
             continue
         before = [m for m in named if m.end() <= speed.start]
+        if before and _of_striker(statement.text[: before[-1].end()], statement.text[before[-1].end() :]):
+            continue
         if before and rule("speeds.between").fullmatch(statement.text, before[-1].end(), speed.start):
             yield before[-1][0], speed
+
+
+def _of_striker(before: str, behind: str) -> bool:
+    """Whether a speed behind a vehicle is that of the one that struck it: "V1 struck V2 at 18 mph"."""
+    return bool(rule("speeds.struck_at").search(before) and rule("speeds.behind_struck").match(behind))
 
 
 def _opens(text: str, named: Sequence[re.Match[str]], speed: Speed) -> bool:

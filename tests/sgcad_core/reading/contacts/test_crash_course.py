@@ -110,7 +110,7 @@ def test_things_are_hit_in_the_order_of_the_text() -> None:
 
 def test_what_was_hit_before_the_vehicles_met_is_marked() -> None:
     text = f"Vehicle #1 crossed the center line and struck a stone wall. {HIT}"
-    assert read(INTRO + text).crash.impacts == (ImpactTold("V1", "wall", before=True),)
+    assert read(INTRO + text).crash.impacts == (ImpactTold("V1", "wall", after=0),)
 
 
 def test_a_side_slap_is_a_second_contact_of_the_same_two() -> None:

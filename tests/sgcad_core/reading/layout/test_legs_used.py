@@ -2,6 +2,7 @@
 
 import pytest
 
+from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.layout.legs_used import legs_used
 from sgcad_core.reading.reading import read
 
@@ -50,3 +51,23 @@ def test_a_side_that_was_struck_tells_where_a_turning_vehicle_came_from(text: st
 ])  # fmt: skip
 def test_a_stem_is_stated_where_a_compass_word_says_it(text: str, stated: bool) -> None:
     assert read(f"{text} {SIDE}").roads.junction.stem_stated is stated
+
+
+@pytest.mark.parametrize(("text", "legs"), [
+    ("V1 was traveling south, approaching a three-leg intersection, and left the road to the south of it.", "N"),
+    ("V1 was traveling south, leaving a private drive, to cross the road. V2 was traveling west on the road.", "NE"),
+    ("V1 was traveling north at the T-intersection. V2 was traveling south, V3 was facing east there.", "SNW"),
+])  # fmt: skip
+def test_a_layout_has_the_legs_that_vehicles_use(text: str, legs: str) -> None:
+    facts = read(f"{text} {SIDE}").roads
+    assert set(legs_used(facts)) <= {leg.bearing for leg in layout_of_facts(facts).legs}
+    assert set(legs) <= {leg.bearing for leg in layout_of_facts(facts).legs}
+
+
+def test_a_leg_that_is_laid_has_the_lanes_that_are_told_of_its_road() -> None:
+    text = (
+        "V1 was traveling north out of a two-way parking lot and turned left to go west. V2 was traveling east on a "
+        "two-way road with two lanes of travel in each direction. The left side of V1 was struck by the front of V2."
+    )
+    legs = {leg.bearing: (leg.lanes_in, leg.lanes_out) for leg in layout_of_facts(read(text).roads).legs}
+    assert legs["W"] == (2, 2)

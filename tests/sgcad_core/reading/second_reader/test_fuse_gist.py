@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 
 from sgcad_core.case.records import CrashReport
 from sgcad_core.reading.reading import read
-from sgcad_core.reading.second_reader.fuse_gist import decide, fused_with_gist, model_right
+from sgcad_core.reading.second_reader.combiner import model_right
+from sgcad_core.reading.second_reader.fuse_gist import decide, fused_with_gist
 from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, alike, areas, meeting, rule_values
 from sgcad_core.records.second_reader import Heard, Opinion, Weights
 

@@ -128,12 +128,12 @@ def test_a_way_that_ends_behind_the_impact_is_no_stop_before_it(end: str) -> Non
     ("V2 pulled up to the crossing and stopped.", "stopped"), ("V2 stopped, then was crossing.", "straight"),
 ])  # fmt: skip
 def test_a_crossing_that_one_comes_to_is_no_movement(told: str, maneuver: str) -> None:
-    facts = read(f"{SCENE}{told} The front of V1 struck the left side of V2.").crash
+    facts = read(f"{SCENE}{told} The front of V1 struck the front of V2.").crash
     assert facts.vehicles[1].maneuver == maneuver
 
 
 def test_a_stop_that_is_told_before_the_impact_stays_one() -> None:
-    text = f"{SCENE}V2 came up to a line of cars and stopped. The front of V1 struck the left side of V2."
+    text = f"{SCENE}V2 came up to a line of cars and stopped. The front of V1 struck the front of V2."
     vehicle = read(text).crash.vehicle("V2")
     assert vehicle is not None
     assert vehicle.maneuver == "stopped"

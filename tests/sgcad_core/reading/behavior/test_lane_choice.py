@@ -1,0 +1,54 @@
+"""Vehicles start in the lane that is told; one that changes lanes starts beside the other one's lane."""
+
+from __future__ import annotations
+
+import pytest
+
+from sgcad_core.reading.behavior.behavior import behavior_of_facts
+from sgcad_core.reading.layout.layout_facts import layout_of_facts
+from sgcad_core.reading.reading import read
+from sgcad_core.roads.layout import road_spec
+
+SIDES = " The left side of V1 struck the right side of V2. It was dry and daylight."
+ROAD = " The road had three lanes in each direction."
+
+
+def lanes(text: str) -> tuple[int | None, ...]:
+    reading = read(text)
+    behavior = behavior_of_facts(reading.crash, road_spec(layout_of_facts(reading.roads)))
+    return tuple(actor.lane for actor in behavior.actors)
+
+
+@pytest.mark.parametrize(("text", "found"), [
+    ("V1 was traveling north in the right lane. V2 was traveling north in the left lane.", (1, 3)),
+    ("V1 was traveling north in lane two. V2 was traveling north in the middle lane.", (2, 2)),
+    ("V1 was northbound and changed lanes to the left. V2 was northbound in the middle lane.", (1, 2)),
+    ("V1 was northbound and changed lanes to the left. V2 was northbound.", (1, 2)),
+    ("V1 was northbound in the middle lane and changed lanes to the left. V2 was northbound.", (2, 3)),
+    ("V1 was northbound on I-5 in the number 1 lane. V2 was northbound in the number 3 lane.", (3, 1)),
+    ("V1 was northbound in the number 1 lane. V2 was northbound in the number 3 lane.", (3, 1)),
+    ("V1 was northbound in the number 1 lane. V2 was northbound in the number 3 lane. They contacted.", (1, 3)),
+])  # fmt: skip
+def test_lanes_are_as_told(text: str, found: tuple[int, ...]) -> None:
+    assert lanes(text + ROAD + SIDES) == found
+
+
+def test_one_that_pulls_out_behind_another_one_starts_in_its_lane() -> None:
+    rear = " The front of V1 struck the back of V2. It was dry and daylight."
+    text = "V1 was northbound and changed lanes to the left. V2 was northbound and stopped." + ROAD + rear
+    assert lanes(text) == (1, 1)
+    told = "V1 was northbound and changed lanes to the left. V2 was northbound in the left lane." + ROAD + rear
+    assert lanes(told) == (2, 3)
+
+
+def test_one_that_overtakes_has_a_lane_to_its_left() -> None:
+    text = "V1 was northbound in the middle lane. V2 was northbound and was passing V1." + ROAD + SIDES
+    assert lanes(text) == (2, 2)
+
+
+def test_the_center_turn_lane_is_one_more_than_the_road_has_in_its_direction() -> None:
+    text = (
+        "V1 was traveling north in the center left turn lane of a five-lane road and intended to turn left at a "
+        "T-intersection. V2 was traveling south. The front of V2 struck the right side of V1."
+    )
+    assert lanes(text)[0] == 3
