@@ -15,18 +15,9 @@ from sgcad_core.case.records import Floats
 from sgcad_core.geometry import plane
 from sgcad_core.geometry.distances import box_distances
 from sgcad_core.geometry.plane import gaps_where_near
+from sgcad_core.metrics.swept_cells import Track, common_cells
 
-CELL_M = 0.25
 Size = tuple[float, float]
-
-
-class Track(NamedTuple):
-    """The motion of one actor for the metrics."""
-
-    t_s: Floats
-    pose: Floats
-    velocity: Floats
-    size: Size
 
 
 class Encroachment(NamedTuple):
@@ -104,33 +95,6 @@ def required_deceleration(first: Track, second: Track, ttc: Floats | None = None
 
 
 # ------------------------------------------------------------------ post-encroachment time
-def _presence(track: Track, origin: Floats, shape: tuple[int, int]) -> tuple[Floats, Floats]:
-    """First and last time at which the box covers each cell of a grid, s; inf and -inf where never."""
-    entered = np.full(shape, np.inf)
-    left = np.full(shape, -np.inf)
-    half = np.array(track.size) / 2
-    reach = float(np.hypot(*half))
-    place = track.pose[:, :2]
-    lows = np.maximum(((place - reach - origin) // CELL_M).astype(int), 0)
-    highs = np.minimum(((place + reach - origin) // CELL_M).astype(int) + 1, shape)
-    east, north = (origin[k] + (np.arange(shape[k]) + 0.5) * CELL_M for k in (0, 1))
-    cos, sin = np.cos(track.pose[:, 2]), np.sin(track.pose[:, 2])
-    moved = np.append(True, (np.diff(track.pose, axis=0) != 0.0).any(axis=1))
-    last = np.append(np.flatnonzero(moved)[1:], len(moved)) - 1  # a standing box is entered once
-    for k, stays in zip(np.flatnonzero(moved), last, strict=True):
-        if (highs[k] <= lows[k]).any():
-            continue
-        window = slice(lows[k, 0], highs[k, 0]), slice(lows[k, 1], highs[k, 1])
-        dx, dy = east[window[0]] - place[k, 0], north[window[1]] - place[k, 1]
-        c, s, t = cos[k], sin[k], track.t_s[k]
-        covered = np.abs((dx * c)[:, None] + dy * s) <= half[0]
-        covered &= np.abs((-dx * s)[:, None] + dy * c) <= half[1]
-        first = entered[window]
-        first[covered & (first > t)] = t
-        left[window][covered] = track.t_s[stays]  # times rise
-    return entered, left
-
-
 def _conflict_area(first: Track, second: Track) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]] | None:
     """Entry and exit times of both actors in the cells that both sweep; None if their paths stay apart."""
     bounds = [
@@ -141,13 +105,7 @@ def _conflict_area(first: Track, second: Track) -> tuple[tuple[Floats, Floats], 
     high = np.minimum(bounds[0][1], bounds[1][1])
     if (high <= low).any():
         return None
-    columns, rows = (int(n) for n in np.ceil((high - low) / CELL_M).astype(int) + 1)
-    shape = (columns, rows)
-    a, b = _presence(first, low, shape), _presence(second, low, shape)
-    common = np.isfinite(a[0]) & np.isfinite(b[0])
-    if not common.any():
-        return None
-    return (a[0][common], a[1][common]), (b[0][common], b[1][common])
+    return common_cells(first, second, low, high)
 
 
 def post_encroachment_time_paper(ego: Track, other: Track) -> Encroachment:

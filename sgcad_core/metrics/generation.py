@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from sgcad_core.case.records import Finding, Stage
+from sgcad_core.findings import HARD
 
 Layer = Literal["parse", "schema", "netconvert", "references", "execution", "content"]
 LAYERS: tuple[Layer, ...] = ("parse", "schema", "netconvert", "references", "execution", "content")
@@ -56,13 +57,14 @@ class AttemptRecord:
 
     @property
     def usable(self) -> bool:
-        """Whether no finding asks for a repair or a refusal; doubts are allowed."""
-        return not any(f.severity in ("repair", "refuse") for f in self.findings)
+        """Whether no finding asks for a repair or a refusal; questions and doubts are allowed."""
+        return not any(f.severity in HARD for f in self.findings)
 
     @property
-    def doubts(self) -> int:
-        """Number of findings of severity `doubt`."""
-        return sum(f.severity == "doubt" for f in self.findings)
+    def doubts(self) -> tuple[int, int]:
+        """Number of questions, then of doubts."""
+        severities = [f.severity for f in self.findings]
+        return severities.count("question"), severities.count("doubt")
 
     @property
     def layer(self) -> Layer | None:
@@ -83,7 +85,7 @@ class CaseRecord:
         return tuple(a for a in self.attempts if a.stage == stage)
 
     def standing(self, stage: Stage) -> AttemptRecord | None:
-        """The attempt of a stage that stands: the least doubtful usable one (`refine.outcome_of`), else the last."""
+        """The attempt of a stage that stands: the least doubted usable one (`refine.outcome_of`), else the last."""
         seen = self.of(stage)
         return min((a for a in seen if a.usable), key=lambda a: a.doubts, default=seen[-1] if seen else None)
 

@@ -7,6 +7,7 @@ so that a crash between others is not lost. Infinite and undefined values are nu
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from itertools import combinations
 from typing import Any
 
@@ -14,7 +15,8 @@ import numpy as np
 
 from sgcad_core.case.records import Execution, Floats, Scenario, Trajectory
 from sgcad_core.metrics import conflict, criticality, displacement, precontact_metrics
-from sgcad_core.metrics.conflict import Encroachment, Track
+from sgcad_core.metrics.conflict import Encroachment
+from sgcad_core.metrics.swept_cells import Track
 from sgcad_core.metrics.thresholds import Thresholds
 
 
@@ -23,7 +25,7 @@ def measure(execution: Execution, scenario: Scenario, thresholds: Thresholds | N
     limits = thresholds or Thresholds()
     sizes = {a.id: (a.length_m, a.width_m) for a in scenario.actors}
     tracks = {t.actor: _track(t, sizes.get(t.actor, (4.6, 1.8))) for t in execution.trajectories}
-    ego = _ego(tracks)
+    ego = ego_of(tracks)
     motion = {t.actor: t for t in execution.trajectories}
     return {
         "ego": ego,
@@ -34,10 +36,11 @@ def measure(execution: Execution, scenario: Scenario, thresholds: Thresholds | N
     }
 
 
-def _ego(tracks: dict[str, Track]) -> str | None:
+def ego_of(actors: Iterable[str]) -> str | None:
     """V1, else the first vehicle, else the first actor."""
-    vehicles = sorted((a for a in tracks if a[0:1] == "V" and a[1:].isdecimal()), key=lambda a: int(a[1:]))
-    return next(iter([*vehicles, *sorted(tracks)]), None)
+    names = sorted(actors)
+    vehicles = sorted((a for a in names if a[0:1] == "V" and a[1:].isdecimal()), key=lambda a: int(a[1:]))
+    return next(iter([*vehicles, *names]), None)
 
 
 def _track(trajectory: Trajectory, size: tuple[float, float]) -> Track:

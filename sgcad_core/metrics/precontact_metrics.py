@@ -20,7 +20,7 @@ import numpy as np
 
 from sgcad_core.case.records import Floats
 from sgcad_core.metrics import conflict
-from sgcad_core.metrics.conflict import Track
+from sgcad_core.metrics.swept_cells import Track
 
 BEFORE_S = (0.5, 1.0, 2.0)
 THRESHOLD_S = 1.5

@@ -19,14 +19,14 @@ from sgcad_core.roads.surface import RoadSurface
 COMPASS_DEG: dict[str, float] = {
     "N": 0.0, "NE": 45.0, "E": 90.0, "SE": 135.0, "S": 180.0, "SW": 225.0, "W": 270.0, "NW": 315.0,
 }  # fmt: skip
-FACING_RAD = math.radians(45.0)
-"""A facing is right within an eighth of the circle: half of it for the word, half for the fit."""
+FACING_RAD = math.radians(20.0)
+"""A facing is right within this angle: less than half of the step from one point of the compass to the next."""
 SIDE_RAD = math.radians(68.0)
 """A side is right within this angle, seen from the nearest lane or the center of the junction; in the road no side is
 right."""
 SPINS_RAD = math.radians(8.0)
 """Rotation after its first contact from which a vehicle spins."""
-SHOULDER_M = (-1.2, 4.0)
+SHOULDER_M = (-0.6, 4.0)
 """Distances beyond the edge of the nearest lane of a box center on a shoulder."""
 OFF_M = 0.0
 """Off the road from here on: the center is beyond the edge."""

@@ -18,6 +18,7 @@ from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.encounter.meeting_place import STANDING, STOP_LINE_M, TURNING, Place
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.path import Path, ramp
+from sgcad_core.planner.motion import ACCELERATION_MPS2
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Actor, Area, Surface
 from sgcad_core.units import MPS_PER_MPH
@@ -28,6 +29,8 @@ BRAKED_TO = 0.72
 """Share of the speed that is left at the contact after braking: there is seldom time for more."""
 PUSHED_M = 0.8
 """Distance that a standing actor rolls when it is pushed into another one."""
+_QUEUE_M = 2.0
+"""Between two that start from rest one behind the other."""
 _STEEP_DEG = 60.0
 """Bearing of a vehicle alongside that is to be hit with the front."""
 
@@ -53,10 +56,16 @@ class Role:
     """Whether the report states how the impact turns the other one."""
     may_skid: bool = False
     """Whether the report states a loss of control."""
+    other_lost: bool = False
+    """Whether it states that of the other one."""
     pushed: bool = False
     """Whether it stands until right before the contact, and is then set rolling into the other one."""
     told: CourseTold = field(default_factory=CourseTold)
     """The evasion that the report states."""
+    goes_on: bool = False
+    """Whether it strikes something else after this contact."""
+    leaves_lanes: bool = False
+    """Whether it may drive out of its lanes untold: where the pair meets in no other way."""
 
     @cached_property
     def kept(self) -> dict[str, Any]:
@@ -65,8 +74,8 @@ class Role:
 
     @property
     def glances(self) -> bool:
-        """Whether it leaves the road after the impact, which a full impact would prevent."""
-        return self.told.rest.where in ("off_road", "shoulder", "median")
+        """Whether it leaves the road or goes on to a further contact, which a full impact would prevent."""
+        return self.goes_on or self.told.rest.where in ("off_road", "shoulder", "median")
 
     @property
     def spins(self) -> float:
@@ -99,6 +108,8 @@ class Drift(NamedTuple):
     ahead_m: float = 0.0
     """Displaced along the heading at the meeting place as well (a course bent towards the other one's)."""
     note: str = ""
+    holds_m: float = 0.0
+    """Length between the change and the way back, where it goes `back`."""
     evades: bool = False
     """Whether it is the evasion that the report states."""
 
@@ -106,7 +117,7 @@ class Drift(NamedTuple):
         """(n,) metres to the left of the undisturbed line at stations."""
         rise = ramp(s_m, self.end_m - self.length_m, self.length_m)
         if self.back:
-            rise = rise - ramp(s_m, self.end_m, self.length_m)
+            rise = rise - ramp(s_m, self.end_m + self.holds_m, self.length_m)
         profile: Floats = self.before_m + self.left_m * rise
         return profile
 
@@ -165,6 +176,8 @@ def speed_there(role: Role) -> float:
     if is_standing(role):
         return 0.0
     speed = min(usual_speed(role), 6.5) if role.actor.maneuver in TURNING else usual_speed(role)
+    if role.told.from_rest:
+        speed = min(speed, math.sqrt(2 * ACCELERATION_MPS2 * max(role.place.station_m - start_m(role), 1.0)))
     return BRAKED_TO * speed if role.told.brakes else speed
 
 
@@ -215,11 +228,16 @@ def starts_at_m(role: Role, pacing: Pacing) -> float | None:
     """The station up to which it stands; None without a standing start."""
     if role.pushed:
         return role.place.station_m - PUSHED_M
-    if pacing.from_stop and role.course.turn is not None:
-        return role.course.turn.entry_m - STOP_LINE_M - role.size[0] / 2
-    if pacing.from_stop:
-        return line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0)
-    return None
+    return start_m(role) if pacing.from_stop else None
+
+
+def start_m(role: Role) -> float:
+    """The station at which an actor that starts from rest stands: at its line, or behind the one that it runs into."""
+    behind = role.told.from_rest and (role.side, role.other_side) == ("front", "back") and along_with(role)
+    queued_m = (role.size[0] + _QUEUE_M) * behind
+    if role.course.turn is not None:
+        return role.course.turn.entry_m - STOP_LINE_M - role.size[0] / 2 - queued_m
+    return line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0) - queued_m
 
 
 def line_m(role: Role) -> float:

@@ -100,6 +100,8 @@ class Motion:
     """The line of the rear axle, with the stations of the box; None without wheels."""
     drivable: bool = True
     """Whether the box can follow this line at all."""
+    starts_s: float | None = None
+    """Own time until which it stands at its stop, where it starts from one that is told or chosen."""
 
     def stations(self, time_s: ArrayLike) -> Floats:
         """Stations at own times."""

@@ -8,29 +8,28 @@ loss of control are the last resort: noted, and doubted by the validator `drivab
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 from sgcad_core.case.records import ObservedContact, Record, Trajectory
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.actor_plan import Role, usual_speed
-from sgcad_core.planner.aftermath.later_contacts import (
-    bring_to_rest,
-    expect_later_contacts,
-    other_of,
-    pair_of,
-    strikes_of,
-)
+from sgcad_core.planner.aftermath.later_contacts import Ending, expect_later_contacts, strikes_of, struck_before
 from sgcad_core.planner.aftermath.rest_candidates import MISSED
 from sgcad_core.planner.aftermath.rest_fit import Impact
-from sgcad_core.planner.bystanders import place_clear, place_for_later_contact
+from sgcad_core.planner.aftermath.struck_objects import Strike
+from sgcad_core.planner.aftermath.told_order import ToldOrder, met_in_order, pair_of
+from sgcad_core.planner.bystanders import place_clear
 from sgcad_core.planner.encounter.conflict import Conflicts
-from sgcad_core.planner.encounter.meeting_place import Place, place_near, preferred_station
+from sgcad_core.planner.encounter.maneuver_choices import ROLLS_IN
+from sgcad_core.planner.encounter.meeting_place import Place, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.near_miss import as_near_miss
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.encounter.try_elsewhere import WholeCourse, least_missed
+from sgcad_core.planner.knocked_aside import drive_over, knock_aside
+from sgcad_core.planner.later_meetings import LaterMeetings
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.gore_lines import into_gores
 from sgcad_core.planner.lines.maneuver_course import course_of
@@ -41,13 +40,15 @@ from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.records.course import NOTHING_TOLD, Courses
 from sgcad_core.records.specs import BehaviorSpec, Contact, NearCrash, size_m
 from sgcad_core.roads.lane_graph import LaneGraph
+from sgcad_core.roads.surface import road_surface
 
-_FURTHER_S = 3.0
-"""Additional time after the first contact where an actor goes on far."""
-_LATER_S = 1.2
-"""A later contact is searched around where its partner is this long after the first."""
+_FURTHER_S, _EACH_S, _MOST_S = 3.0, 0.8, 7.0
+"""Additional time after the first contact where an actor goes on far, for each contact from the third on, and at
+most."""
 _MANEUVER_MISSED = 3.0
 """Cost of a stated maneuver that is not visible: more than any two parts of the course after the contact."""
+WAITS_S = 1.5
+"""Time for which a vehicle that starts from rest is seen standing."""
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
 _SPEED_SHOWS_S = 0.3
@@ -89,7 +90,7 @@ def plan(
     contacts, near = cast.contacts, behavior.near_crash
     found = conflicts.of(contacts[0]) if contacts else cast.near_crash(near, conflicts) if near else None
     cast.notes += conflicts.notes
-    done = least_missed(found, lambda encounter, impacts: cast.unfolded(encounter, graph, impacts))
+    done = least_missed(found, lambda encounter, impacts: cast.unfolded(encounter, graph, conflicts, impacts))
     first = behavior.contacts[0] if behavior.contacts else None
     observed = done.scene.first_contact()
     realised = observed is None if first is None else observed is not None and observed.is_of(first)
@@ -121,9 +122,20 @@ class _Cast:
         return frozenset(strike.thing.id for strike in strikes_of(self.behavior, self.contacts))
 
     @cached_property
-    def contacts(self) -> list[Contact]:
+    def possible(self) -> list[Contact]:
         """The contacts of the behavior that are possible."""
         return self.usable(self.behavior.contacts)
+
+    @cached_property
+    def early(self) -> list[Strike]:
+        """What is struck before the first contact of two vehicles."""
+        return struck_before(self.behavior, self.possible)
+
+    @cached_property
+    def contacts(self) -> list[Contact]:
+        """The possible contacts from the first one of vehicles on; all of them where no two vehicles touch."""
+        aside = {strike.thing.id for strike in self.early}
+        return [contact for contact in self.possible if contact.struck not in aside]
 
     def usable(self, contacts: Sequence[Contact]) -> list[Contact]:
         """Contacts between two different actors of the behavior."""
@@ -137,26 +149,34 @@ class _Cast:
         return found
 
     # -------------------------------------------------------------- the whole course
-    def unfolded(self, found: Encounter | None, graph: LaneGraph, impacts: Sequence[Impact]) -> WholeCourse:
+    def unfolded(
+        self, found: Encounter | None, graph: LaneGraph, conflicts: Conflicts, impacts: Sequence[Impact]
+    ) -> WholeCourse:
         """The whole course from an encounter on, and its distance from what is stated; this object stays unchanged."""
         cast = replace(self, tractors=dict(self.tractors), notes=list(self.notes))
         lead, after = round(LEAD_S[0] / STEP_S), round(AFTER_S / STEP_S)
         scene = cast.staged(found) if found else Scene(lead + after + 1, lead)
         expect_later_contacts(scene, cast.contacts)
-        for contact in cast.contacts[1:]:
-            cast.later(scene, contact)
+        scene.settle()
+        surface = road_surface(graph)
+        order = ToldOrder(scene, frozenset(map(pair_of, cast.contacts)), [pair_of(c) for c in cast.contacts[:1]])
+        meetings = LaterMeetings(scene, surface, cast.role, conflicts.of, order)
+        ending = Ending(scene, self.behavior, cast.contacts, order, meetings.arrange)
+        cast.notes += ending.meet_first()
+        ended = ending.come(self.told, surface, impacts)
         cast.rest(scene)
         scene.settle()
-        ended = bring_to_rest(scene, self.behavior, cast.contacts, self.told, graph, impacts)
-        missed = ended.missed + cast.missed + MISSED * sum(1 for _ in cast.unmet(scene))
-        return WholeCourse(scene, (*cast.notes, *ended.notes), cast.oddity, missed)
+        aside = [*knock_aside(scene, cast.early, surface), *drive_over(scene, ended.passed, surface)]
+        notes = () if cast.possible or self.behavior.near_crash else tuple(scene.turn_over(self.told))
+        missed = ended.missed + cast.missed + MISSED * (len(aside) + cast.unmet(scene))
+        return WholeCourse(scene, (*cast.notes, *ended.notes, *aside, *notes), cast.oddity, missed)
 
-    def unmet(self, scene: Scene) -> Iterator[Contact]:
-        """Further contacts of vehicles that do not happen; those with objects and second ones are counted elsewhere."""
-        met = {frozenset((touch.first, touch.second)) for touch in scene.touches}
-        for contact in self.contacts[1:]:
-            if contact.struck not in self.things and pair_of(contact) not in met:
-                yield contact
+    def unmet(self, scene: Scene) -> int:
+        """The number of further contacts of vehicles that do not happen in order; those with objects and second ones
+        are counted elsewhere."""
+        further = [pair_of(c) for c in self.contacts[1:] if c.struck not in self.things]
+        pairs = dict.fromkeys(pair for pair in further if pair not in scene.again)
+        return met_in_order(scene.touches, pairs).count(None)
 
     # -------------------------------------------------------------- the first contact
     def near_crash(self, near: NearCrash, conflicts: Conflicts) -> Encounter | None:
@@ -172,21 +192,32 @@ class _Cast:
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
         lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
         lead = max([lead, *(_seen_s(option.role, m, own) for option, m, own in pair)])
-        room = min((own - m.time_at(o.role.course.first_m) for o, m, own in pair if not m.standing), default=LEAD_S[1])
+        rest_s = [own - m.starts_s for _, m, own in pair if m.starts_s is not None]
+        lead = max([lead, *(since + WAITS_S for since in rest_s)])
+        driven = ((o, m, own) for o, m, own in pair if not m.standing and m.starts_s is None)
+        room = min((own - m.time_at(o.role.course.first_m) for o, m, own in driven), default=LEAD_S[1])
         contact = math.ceil(min(max(min(lead, room), LEAD_S[0]), LEAD_S[1]) / STEP_S)
-        after = AFTER_S + (_FURTHER_S if self._runs_on() else 0.0)
-        again = frozenset(name for c in self.behavior.contacts[1:] for name in (c.striker, c.struck))
+        after = AFTER_S + self._runs_on_s()
+        again = frozenset(name for c in self.contacts[1:] for name in (c.striker, c.struck))
         scene = Scene(contact + round(after / STEP_S) + 1, contact, again, self.behavior.surface)
         for option, motion, own in pair:
             self.notes += option.notes
             self.oddity += option.oddity + option.role.course.astray
             scene.add(option.role.actor.id, option.role.actor.kind, motion, own, brakes=False)
+        if self.contacts:
+            self._let_through(scene, self.contacts[0])
         for option, _, own in pair:
             self._couple(scene, option.role.actor.id, own)
         scene.settle()
         if self.contacts:
             self._look(scene, pair)
         return scene
+
+    def _let_through(self, scene: Scene, first: Contact) -> None:
+        """Lets a thing that is struck first give way where its vehicle strikes something else after it."""
+        track = scene.tracks[first.struck]
+        if track.motion.fixed and any(first.striker in (c.striker, c.struck) for c in self.contacts[1:]):
+            track.give_way()
 
     def _look(self, scene: Scene, pair: Iterable[tuple[Option, Motion, float]]) -> None:
         """Notes which stated maneuvers and evasions are not visible before the contact."""
@@ -198,14 +229,19 @@ class _Cast:
             if words := unseen_maneuver(role.actor, role.course, until):
                 self.notes.append(words)
                 self.missed += _MANEUVER_MISSED
+            if ROLLS_IN in option.pacing.note:
+                self.missed += _MANEUVER_MISSED
             unseen = list(unseen_evasion(role.actor.id, role.course, role.told, until))
             self.notes += unseen
             self.missed += len(unseen)
 
-    def _runs_on(self) -> bool:
-        """Whether an actor goes on far after the first contact: off the road, or into a further contact."""
+    def _runs_on_s(self) -> float:
+        """Additional time where an actor goes on far after the first contact: off the road, or into further
+        contacts."""
         afar = any(course.rest.where in ("off_road", "shoulder", "median") for course in self.told.values())
-        return afar or len(self.behavior.contacts) > 1
+        if not afar and len(self.contacts) < 2:
+            return 0.0
+        return min(_FURTHER_S + _EACH_S * max(len(self.contacts) - 2, 0), _MOST_S)
 
     # -------------------------------------------------------------- the others
     def _couple(self, scene: Scene, actor: str, own_s: float) -> None:
@@ -228,33 +264,22 @@ class _Cast:
 
     def _in_contact(self, actor: str) -> bool:
         """Whether an actor takes part in the first declared contact."""
-        return any(actor in (c.striker, c.struck) for c in self.behavior.contacts[:1])
-
-    def later(self, scene: Scene, contact: Contact) -> None:
-        """Arranges a further declared contact of vehicles where one of the two is not placed yet, if possible."""
-        placed = [x for x in (contact.striker, contact.struck) if x in scene.tracks]
-        if len(placed) != 1 or contact.struck in self.things:
-            return
-        partner = placed[0]
-        new, sides = other_of(contact, partner)
-        role = self._own_role(new)
-        target = scene.tracks[partner].poses[scene.contact + round(_LATER_S / STEP_S)]
-        role = replace(role, place=place_near(role.course, target), side=sides[1], other_side=sides[0])
-        if not place_for_later_contact(scene, role, partner, sides):
-            self.notes.append(f"later contact of {contact.striker} and {contact.struck} could not be arranged")
+        return any(actor in (c.striker, c.struck) for c in self.contacts[:1])
 
     def rest(self, scene: Scene) -> None:
         """Places all remaining actors that are not struck on the way, clear of the others."""
+        aside = {strike.thing.id for strike in self.early}
         for actor in self.behavior.actors:
-            if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in self.things:
+            if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in self.things | aside:
                 continue
-            note = place_clear(scene, self._own_role(actor.id))
+            note = place_clear(scene, self.role(actor.id))
             self.notes += [note] if note else []
             track = scene.tracks[actor.id]
             own = track.own_s if track.motion.standing else track.own_s + scene.contact * STEP_S
             self._couple(scene, actor.id, own)
 
-    def _own_role(self, name: str) -> Role:
+    def role(self, name: str) -> Role:
+        """An actor at its usual place, for an encounter with another one."""
         actor, course = self.actors[name], self.courses[name]
         place = Place(preferred_station(actor, course, size_m(actor)[0]), 0.0, 0.0, 0.0)
         return Role(actor, course, size_m(actor), place, surface=self.behavior.surface)

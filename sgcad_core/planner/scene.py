@@ -5,8 +5,8 @@ A track is (n, 3) poses 0.05 s apart from time 0. Knows motions and the wreck, n
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-from dataclasses import dataclass, field
+from collections.abc import Hashable, Iterator
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from typing import NamedTuple
 
@@ -19,7 +19,7 @@ from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
 from sgcad_core.planner.aftermath.hitch import hitched
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, body
-from sgcad_core.planner.aftermath.rollover import roll_angles, rolls_over
+from sgcad_core.planner.aftermath.rollover import roll_angles, rolls_over, turned_over
 from sgcad_core.planner.aftermath.wreck import Wreck
 from sgcad_core.planner.aftermath.wreck_bodies import Mover, Touch
 from sgcad_core.planner.lines.path import Path
@@ -41,6 +41,8 @@ _STANDS_MPS, _SHOWN_MPS = 0.02, 2.6
 """Between these speeds a vehicle moves less than 0.11 m in a sample. Players drop vertices that lie nearer, and with
 them the moment of the impact."""
 _UNSEEN_COST = 2.0
+GIVES_WAY_KG = 60.0
+"""Mass of things that give way: a breakaway post, a sign, a piece of fence."""
 CLEAR_M = 0.25
 """Actors that do not touch pass each other at this distance or more where possible."""
 
@@ -60,11 +62,18 @@ class Track:
     """Index of its first impact."""
     mass: float | None = None
     """Its mass where it differs from that of its kind, kg."""
+    gives_way: bool = False
+    """Whether what strikes it goes on past it."""
     driven: Floats = field(init=False)
     """Its poses without any contact."""
 
     def __post_init__(self) -> None:
         self.driven = self.poses
+
+    def give_way(self) -> None:
+        """Lets what strikes it go on past it: people are thrown aside, of things a breakaway post or a piece."""
+        self.motion, self.gives_way = replace(self.motion, fixed=False), True
+        self.mass = GIVES_WAY_KG if actor_kind(self.kind).thing else None
 
 
 class _Settled(NamedTuple):
@@ -87,12 +96,14 @@ class Scene:
     """Actors with a further contact ahead."""
     surface: Surface | None = None
     tracks: dict[str, Track] = field(default_factory=dict)
+    aside: dict[str, Track] = field(default_factory=dict)
+    """What is struck before the first contact and gives way: no bodies of the simulation."""
     hitches: list[tuple[str, str, float]] = field(default_factory=list)
     """Tractor, trailer, and how far behind the tractor's center they are coupled."""
     touches: list[Touch] = field(default_factory=list)
     """Touches in order, as of the last settling."""
-    runs: dict[str, RunOut] = field(default_factory=dict)
-    """Chosen run-out after the impact, by actor."""
+    runs: dict[str, tuple[RunOut, ...]] = field(default_factory=dict)
+    """Chosen run-outs after impacts, by actor, in order of time."""
     friction: float = FRICTION
     restitution: float = RESTITUTION
     again: frozenset[frozenset[str]] = frozenset()
@@ -101,12 +112,20 @@ class Scene:
     """Pairs with a stated contact after the first."""
     _settled: dict[Hashable, _Settled] = field(default_factory=dict, repr=False)
 
+    @property
+    def everybody(self) -> dict[str, Track]:
+        """All tracks."""
+        return {**self.tracks, **self.aside}
+
     def add(self, actor: str, kind: ActorKind, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Track:
         """Places an actor so that its own clock shows the given time at the first contact."""
-        own = own_at_contact_s if motion.standing else own_at_contact_s - self.contact * STEP_S
-        track = Track(actor, kind, motion.size, self.poses(motion, own_at_contact_s, brakes=brakes), motion, own)
-        self.tracks[actor] = track
+        self.tracks[actor] = track = self.track(actor, kind, motion, own_at_contact_s, brakes=brakes)
         return track
+
+    def track(self, actor: str, kind: ActorKind, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Track:
+        """The track of an actor whose own clock shows the given time at the first contact, not yet placed."""
+        own = own_at_contact_s if motion.standing else own_at_contact_s - self.contact * STEP_S
+        return Track(actor, kind, motion.size, self.poses(motion, own_at_contact_s, brakes=brakes), motion, own)
 
     def poses(self, motion: Motion, own_at_contact_s: float, *, brakes: bool) -> Floats:
         """(count, 3) poses of a motion; `brakes`: it stops after the first contact."""
@@ -141,7 +160,9 @@ class Scene:
 
     def _cause(self) -> Hashable:
         """All that determines the motion to rest."""
-        movers = tuple((t.actor, id(t.driven), t.size, t.mass, t.motion.fixed) for t in self.tracks.values())
+        movers = tuple(
+            (t.actor, id(t.driven), t.size, t.mass, t.motion.fixed, t.gives_way) for t in self.tracks.values()
+        )
         chosen = self.friction, self.restitution, self.again, self.told, tuple(self.runs.items())
         return movers, tuple(self.hitches), chosen, self.rolling, self.surface, self.count
 
@@ -157,33 +178,41 @@ class Scene:
     def _mover(self, track: Track) -> Mover:
         mass = None if track.motion.fixed else track.mass or mass_kg(track.kind, track.size[0])
         start = body((0.0, 0.0, 0.0), track.size, mass)
-        return Mover(track.actor, start, track.driven, self.drag(track), self.runs.get(track.actor))
+        runs = self.runs.get(track.actor, ())
+        return Mover(track.actor, start, track.driven, self.drag(track), runs, gives_way=track.gives_way)
 
     def drag(self, track: Track) -> Drag:
         """Deceleration of an actor without a chosen run-out."""
         along = ROLLING_MPS2 if track.actor in self.rolling else BRAKED_MPS2
         return usual_drag(track.kind, DRIVING.sliding_mps2(self.surface), along)
 
+    def turn_over(self, told: Courses) -> Iterator[str]:
+        """Lets vehicles without a contact roll over from the time of the first contact on, as told; notes on them."""
+        for name, track in self.tracks.items():
+            if name in told and rolls_over(told[name]) and track.hit is None:
+                track.hit, track.poses = self.contact, turned_over(track.poses, self.contact, told[name])
+                yield f"{name} rolls over and touches nobody"
+
     def first_contact(self) -> ObservedContact | None:
         """The first overlap of any two actors, as seen in the trajectories."""
         found: tuple[int, str, str] | None = None
-        for a, b in combinations(sorted(self.tracks), 2):
-            one, two = self.tracks[a], self.tracks[b]
+        tracks = self.everybody
+        for a, b in combinations(sorted(tracks), 2):
+            one, two = tracks[a], tracks[b]
             hit = first_overlap(one.poses, one.size, two.poses, two.size)
             if hit is not None and (found is None or hit < found[0]):
                 found = (hit, a, b)
         if found is None:
             return None
         k, a, b = found
-        p, q = (Box.at(self.tracks[name].poses[k], self.tracks[name].size) for name in (a, b))
+        p, q = (Box.at(tracks[name].poses[k], tracks[name].size) for name in (a, b))
         t_s = round(k * STEP_S, 3)
         return ObservedContact(actor=a, other=b, actor_area=contact_area(p, q), other_area=contact_area(q, p), t_s=t_s)
 
-    def replay(self, name: str, from_s: float, to_s: float) -> Motion:
-        """The track of an actor as a motion whose own time 0 is the first contact, for an encounter within a time
-        span."""
+    def replay(self, name: str, zero: int, from_s: float, to_s: float) -> Motion:
+        """The track of an actor as a motion whose own time 0 is a sample, for an encounter within a time span."""
         track = self.tracks[name]
-        times = clock(-self.contact, self.count - self.contact)
+        times = clock(-zero, self.count - zero)
         path = Path(track.poses[:, :2], times, track.poses[:, 2])
         speed = np.hypot(*np.gradient(track.poses[:, :2], STEP_S, axis=0).T)
         unseen = (speed > _STANDS_MPS) & (speed < _SHOWN_MPS)
@@ -192,7 +221,7 @@ class Scene:
 
     def trajectories(self, order: tuple[str, ...], told: Courses = NOTHING_TOLD) -> tuple[Trajectory, ...]:
         """All tracks as records, in the given order; `told`: stated courses, for rollovers."""
-        return tuple(_trajectory(self.tracks[name], told.get(name)) for name in order)
+        return tuple(_trajectory(self.everybody[name], told.get(name)) for name in order)
 
 
 def usual_drag(kind: ActorKind, grip_mps2: float, along_mps2: float = BRAKED_MPS2) -> Drag:

@@ -17,6 +17,8 @@ def stand_offs(role: Role) -> list[Drift]:
     if role.actor.maneuver == "parked":
         curb, shoulder = -(right - width / 2 - 0.2), -(right + width / 2 + 0.3)
         lines = [(curb, 0.0), (shoulder, 0.1), ((curb + shoulder) / 2, 0.15), (curb / 2, 0.6), (0.0, 0.9)]
+        if role.actor.lane is not None and right > role.course.lane_width_m:  # not the curb lane: it stands in it
+            return [Drift(0.0), Drift(0.1, 0.5), Drift(0.1, -0.5), *(Drift(cost + 1.0, left) for left, cost in lines)]
         beside = role.course.beside_m
         if aside_m := beside.get("parking", beside.get("shoulder")):
             lines = [(-aside_m, 0.0), *((left, cost + 0.2) for left, cost in lines)]

@@ -5,17 +5,20 @@ Works on a scene in which all other actors are placed. Knows behaviors, scenes a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from itertools import islice
+from typing import NamedTuple, Protocol
 
 from sgcad_core.planner.aftermath.rest_candidates import MISSED
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit, leaving_the_road
-from sgcad_core.planner.aftermath.struck_objects import Strike, strike_things
+from sgcad_core.planner.aftermath.struck_objects import Strike, leave_beside, place_thing
+from sgcad_core.planner.aftermath.told_order import ToldOrder, pair_of
+from sgcad_core.planner.later_courses import runs_on, with_run
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold
-from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact
-from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.roads.surface import road_surface
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
+from sgcad_core.roads.surface import RoadSurface
 
 
 class Ended(NamedTuple):
@@ -23,8 +26,20 @@ class Ended(NamedTuple):
 
     notes: tuple[str, ...]
     missed: float
+    passed: tuple[tuple[Strike, int], ...] = ()
+    """Objects that are struck by vehicles without any other contact, not yet placed, and the sample behind which each
+    is struck."""
 
 
+class Meet(Protocol):
+    """Arranges a further contact of vehicles."""
+
+    def __call__(self, contact: Contact, *, more: bool) -> bool:
+        """Whether it comes about; `more`: others follow."""
+
+
+_OTHER_WAYS = 4
+"""Run-outs that are tried where a thing is not reached."""
 _ASIDE = 0.3
 """Share of the length of a side: what a vehicle knocks over and pushes along is not between it and the next object."""
 
@@ -32,18 +47,6 @@ _ASIDE = 0.3
 def _stands_by(actor: Actor) -> bool:
     """Whether an actor can be struck on the way of a wreck: a thing, or a person without a body around."""
     return actor.record.thing or actor.record.exposed
-
-
-def pair_of(contact: Contact) -> frozenset[str]:
-    """The two actors of a contact, in no order."""
-    return frozenset((contact.striker, contact.struck))
-
-
-def other_of(contact: Contact, partner: str) -> tuple[str, tuple[Area, Area]]:
-    """The other actor of a contact, and the sides of the partner and of the other one."""
-    if partner == contact.striker:
-        return contact.struck, (contact.striker_area, contact.struck_area)
-    return contact.striker, (contact.struck_area, contact.striker_area)
 
 
 def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Strike]:
@@ -65,6 +68,19 @@ def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Stri
     return found
 
 
+def struck_before(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Strike]:
+    """The contacts with objects, people and animals that are told before the first one of two vehicles, in order; none
+    where no two vehicles touch."""
+    actors = {a.id: a for a in behavior.actors}
+    count = next((n for n, c in enumerate(contacts) if not _stands_by(actors[c.struck])), 0)
+    early = [c for c in contacts[:count] if not _stands_by(actors[c.striker])]
+    met = [c.struck for c in early] + [x for c in contacts[count:] for x in (c.striker, c.struck)]
+    return [
+        Strike(actors[c.struck], c.striker, c.striker_area, goes_on=True, thing_side=c.struck_area)
+        for c in early if met.count(c.struck) == 1
+    ]  # fmt: skip
+
+
 def expect_later_contacts(scene: Scene, contacts: Sequence[Contact]) -> None:
     """Sets the pairs of a scene that touch after the first contact, and those that touch a second time."""
     first = {pair_of(contact) for contact in contacts[:1]}
@@ -72,25 +88,83 @@ def expect_later_contacts(scene: Scene, contacts: Sequence[Contact]) -> None:
     scene.again, scene.told = further & first, further - first
 
 
-def bring_to_rest(
-    scene: Scene,
-    behavior: BehaviorSpec,
-    contacts: Sequence[Contact],
-    courses: Courses,
-    graph: LaneGraph,
-    impacts: Sequence[Impact] = IMPACTS,
-) -> Ended:
-    """Brings the vehicles to rest as stated, by way of the objects that they strike.
+def _on_the_way(told: Courses, rolling: frozenset[str]) -> Courses:
+    """The stated courses of vehicles as they come to what they strike: how they face at rest follows from that."""
+    return {
+        name: replace(course, rest=replace(course.rest, facing_deg=None)) if name in rolling else course
+        for name, course in told.items()
+    }
 
-    `contacts`: the possible ones, the first one first. `impacts`: friction and restitution to try.
+
+class Ending:
+    """What brings the vehicles of a scene to rest: stated ends, what they strike on the way, and what they meet there.
+
+    `contacts`: the possible ones, the first one first. `impacts`: friction and restitution to try. `meet`: arranges a
+    further contact of vehicles (`more`: others follow); whether it comes about.
     """
-    strikes = strikes_of(behavior, contacts)
-    told = {actor.id: courses[actor.id] for actor in behavior.actors if actor.id in courses}
-    if not told and not strikes and not scene.again:
-        return Ended((), 0.0)
-    for strike in strikes:
-        told[strike.by] = leaving_the_road(told.get(strike.by, CourseTold()))
-    rests = RestFit(scene, told, road_surface(graph), frozenset(strike.by for strike in strikes), impacts)
-    rests.fit()
-    unreached = list(strike_things(scene, strikes, rests.surface, rests.cost))
-    return Ended((*unreached, *rests.missed()), rests.cost() + MISSED * len(unreached))
+
+    def __init__(
+        self, scene: Scene, behavior: BehaviorSpec, contacts: Sequence[Contact], order: ToldOrder, meet: Meet,
+    ) -> None:  # fmt: skip
+        self.scene, self.order, self.meet = scene, order, meet
+        self.strikes = {strike.thing.id: strike for strike in strikes_of(behavior, contacts)}
+        further = [c for c in contacts[1:] if pair_of(c) not in scene.again]
+        at = next((n for n, c in enumerate(further) if c.struck in self.strikes), len(further))
+        self.before, self.then = further[:at], further[at:]
+
+    def meet_first(self) -> Iterator[str]:
+        """Arranges the contacts before the first one with a thing on the way; notes on those that cannot be."""
+        for number, contact in enumerate(self.before, 1):
+            yield from self._meet(contact, more=bool(self.then) or number < len(self.before))
+
+    def come(self, courses: Courses, surface: RoadSurface, impacts: Sequence[Impact] = IMPACTS) -> Ended:
+        """Brings the vehicles to rest as stated, by way of what they strike and meet."""
+        scene, touched = self.scene, {name for touch in self.scene.touches for name in (touch.first, touch.second)}
+        rolling = frozenset(strike.by for strike in self.strikes.values() if strike.by in touched)
+        told = {name: courses[name] for name in scene.tracks if name in courses}
+        passed: list[tuple[Strike, int]] = []
+        if not told and not rolling and not scene.again:
+            notes = list(self._then(surface, lambda: 0.0, passed))
+            return Ended(tuple(notes), MISSED * len(notes), tuple(passed))
+        for name in rolling:
+            told[name] = leaving_the_road(told.get(name, CourseTold()))
+        RestFit(scene, _on_the_way(told, rolling), surface, rolling, impacts, self.order).fit()
+        as_told = RestFit(scene, told, surface, rolling, impacts, self.order)
+        notes = list(self._then(surface, as_told.cost, passed))
+        told = {name: courses[name] for name in scene.tracks if name in courses} | told
+        rests = RestFit(scene, told, surface, rolling, impacts, self.order)
+        rests.finish()
+        return Ended((*notes, *rests.missed()), rests.cost() + MISSED * len(notes), tuple(passed))
+
+    def _then(self, surface: RoadSurface, cost: Callable[[], float], passed: list[tuple[Strike, int]]) -> Iterator[str]:
+        """The contacts from the first thing on the way on, in order; notes on those that do not come about.
+
+        `passed` gets the strikes of vehicles that were not touched: they drive on, and are placed later.
+        """
+        for number, contact in enumerate(self.then, 1):
+            more, strike = len(self.then) - number, self.strikes.get(contact.struck)
+            if strike is None or contact.struck in self.scene.tracks:
+                yield from self._meet(contact, more=more > 0)
+            elif any(strike.by in (touch.first, touch.second) for touch in self.scene.touches):
+                yield from self._strike(strike, surface, cost, more)
+            else:
+                passed.append((strike, self.order.after))
+
+    def _strike(self, strike: Strike, surface: RoadSurface, cost: Callable[[], float], more: int) -> Iterator[str]:
+        """Places a thing on the way of its vehicle, or on another one that it can take; a note where it is missed."""
+        scene, before = self.scene, self.scene.runs
+        if place_thing(scene, strike, surface, cost, self.order, more=more):
+            return
+        for run in islice(runs_on(scene, strike.by, surface, self.order.after), _OTHER_WAYS):
+            scene.runs = with_run(scene, strike.by, run)
+            scene.settle()
+            if self.order.kept and place_thing(scene, strike, surface, cost, self.order, more=more):
+                return
+            scene.runs = before
+            scene.settle()
+        leave_beside(scene, strike)
+        yield f"{strike.by} does not reach {strike.thing.id}, which it strikes as told"
+
+    def _meet(self, contact: Contact, *, more: bool) -> Iterator[str]:
+        if not self.meet(contact, more=more):
+            yield f"later contact of {contact.striker} and {contact.struck} could not be arranged"

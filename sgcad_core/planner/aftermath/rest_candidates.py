@@ -6,6 +6,7 @@ they end elsewhere. Knows bodies and costs; no report and no roads.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
@@ -19,8 +20,12 @@ from sgcad_core.planner.aftermath.ground_friction import RunOut
 
 Ints = NDArray[np.int_]
 
-_BRAKES_SHARE = (0.05, 0.12, 0.22, 0.36, 0.58, 0.92)
-"""Share of the friction: from rolling on with bent wheels to four locked ones."""
+_BRAKES_SHARE, _SLOW_SHARE = (0.05, 0.12, 0.22, 0.36, 0.58, 0.92), (0.36, 0.58, 0.92)
+"""Share of the friction: from rolling on with bent wheels to four locked ones; and of a slow one, which stops."""
+_SLOW_MPS = 4.0
+"""A slower vehicle has no driver any more who lets it roll: it would crawl for seconds."""
+_STRAY_RAD, _STRAYS = math.radians(60.0), 0.6
+"""A way that turns more than this is driven in a loop, and the cost of each as much again."""
 _BENDS_PER_M = (0.0, 0.015, -0.015, 0.03, -0.03, 0.06, -0.06, 0.1, -0.1, 0.15, -0.15)
 """Down to a turning circle of 13 m."""
 _TURNING = (1.0, 0.8, 0.6, 0.45, 0.35)
@@ -39,6 +44,8 @@ _IN_EACH_OTHER_M = 0.25
 MISSED = 1.5
 """Cost of a stated second contact that does not happen."""
 UNUSUAL = 0.02
+_MOVES_MPS = 0.7
+"""Speed from which the direction of a way counts."""
 
 
 class Choice(NamedTuple):
@@ -46,7 +53,7 @@ class Choice(NamedTuple):
 
     friction: float
     restitution: float
-    runs: Mapping[str, RunOut]
+    runs: Mapping[str, tuple[RunOut, ...]]
 
 
 @dataclass
@@ -136,13 +143,13 @@ class BlowWays:
         """The most promising run-outs, noted as tried."""
         best = self.best()
         self.tried.add(best)
-        runs = {name: v.runs[i] for (name, v), i in zip(self.vehicles.items(), best, strict=True)}
+        runs = {name: (v.runs[i],) for (name, v), i in zip(self.vehicles.items(), best, strict=True)}
         return Choice(self.friction, self.restitution, runs)
 
     def learn(self, choice: Choice, ends: Mapping[str, Floats]) -> None:
         """Corrects the end poses by those of the whole simulation of a choice."""
         for name, v in self.vehicles.items():
-            v.off = ends[name] - v.ends[v.runs.index(choice.runs[name])]
+            v.off = ends[name] - v.ends[v.runs.index(choice.runs[name][0])]
         self.known = None
 
 
@@ -154,12 +161,12 @@ def _various(runs: Sequence[RunOut], costs: Floats, most: int) -> list[int]:
     return [i for same in by_bend.values() for i in same[:most]]
 
 
-def all_runs(from_s: float, grip_mps2: float, *, on_wheels: bool = True) -> list[RunOut]:
-    """All run-outs; a vehicle not `on_wheels` does not drive on, and hardly steers before it rolls over."""
+def all_runs(from_s: float, grip_mps2: float, mps: float, *, on_wheels: bool = True) -> list[RunOut]:
+    """All run-outs from a speed; one not `on_wheels` does not drive on, and hardly steers before it rolls over."""
     bends = [bend for bend in _BENDS_PER_M if on_wheels or abs(bend) <= _BEFORE_IT_ROLLS_PER_M]
-    ways = [
-        RunOut(from_s, s * grip_mps2, bend, turning) for s, bend, turning in product(_BRAKES_SHARE, bends, _TURNING)
-    ]
+    shares = _BRAKES_SHARE if mps > _SLOW_MPS else _SLOW_SHARE
+    ways = [RunOut(from_s, s * grip_mps2, bend, turning) for s, bend, turning in product(shares, bends, _TURNING)]
+    on_wheels = on_wheels and mps > _SLOW_MPS
     gentle = [way for way in ways if abs(way.bend_per_m) <= _DRIVES_ON_PER_M and way.turning == _TURNING[0]]
     return ways + [way._replace(rolls_s=rolls) for way in gentle for rolls in _DRIVES_ON_S if on_wheels]
 
@@ -172,3 +179,13 @@ def oddities(runs: Sequence[RunOut], grip: float, usual_share: float) -> Floats:
             for r in runs
         ]
     )
+
+
+def loops(ways: Floats, step_s: float) -> Floats:
+    """(n,) costs of (m, n, 3) run-outs that turn far from the direction in which they begin."""
+    moves = np.diff(ways[:, :, :2], axis=0)
+    moving = np.hypot(*moves.transpose(2, 0, 1)) > _MOVES_MPS * step_s
+    way = np.unwrap(np.arctan2(moves[..., 1], moves[..., 0]), axis=0)
+    turned = np.where(moving, np.abs(way - way[:1]), 0.0).max(axis=0)
+    cost: Floats = _STRAYS * np.maximum(turned / _STRAY_RAD - 1.0, 0.0)
+    return cost

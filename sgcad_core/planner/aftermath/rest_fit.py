@@ -19,8 +19,18 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.rest_error import FACING_RAD, SIDE_RAD, SPINS_RAD, RestErrors, rest_errors
 from sgcad_core.planner.aftermath.ground_friction import Released, run_out_paths
-from sgcad_core.planner.aftermath.rest_candidates import MISSED, BlowWays, Choice, VehicleWays, all_runs, oddities
+from sgcad_core.planner.aftermath.rest_candidates import (
+    MISSED,
+    BlowWays,
+    Choice,
+    VehicleWays,
+    all_runs,
+    loops,
+    oddities,
+)
 from sgcad_core.planner.aftermath.rollover import rolls_over
+from sgcad_core.planner.aftermath.told_order import ToldOrder
+from sgcad_core.planner.later_courses import RunOuts, run_outs, with_run
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold, RestTold
@@ -33,10 +43,16 @@ where they lock."""
 _BLOW_S = 0.3
 """Duration of the impact; then the bodies have parted or slide together, and drivers and wheels count."""
 _COARSE_S = 0.1
+_PARTED = 100.0
+"""Cost of a rest that takes away a told contact: more than any end that is missed."""
+_LAST_RUNS = 2
+"""Run-outs behind the last touch of a vehicle that are simulated."""
 _WHOLE = 3
 """Whole simulations at most, beyond one for each friction and restitution."""
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
 """Margin inside the allowed error that counts as best."""
+_FACING_SCALE_RAD = math.radians(45.0)
+"""Error of a facing that counts as much again as missing it."""
 _TOLD = 1.0
 _USUAL_SHARE = 0.6
 """Share of the friction: some braking, some dragging wheels."""
@@ -61,6 +77,8 @@ class RestFit:
     """Vehicles with a further contact: of two run-outs the longer one is taken."""
     impacts: Sequence[Impact] = IMPACTS
     """Friction and restitution that are tried."""
+    order: ToldOrder | None = None
+    """The contacts that come about, and must go on to."""
 
     def fit(self) -> None:
         """Chooses the best parameters and settles the scene with them."""
@@ -86,6 +104,27 @@ class RestFit:
                 best, least = self._choice(), cost
         if self._choice() != best:
             self._take(best)
+
+    def finish(self) -> None:
+        """Lets vehicles that met something after the first contact run out to their stated ends from there on."""
+        blow = self.scene.contact + 2 * round(_BLOW_S / STEP_S)
+        for name, course in self.wanted.items():
+            now = float(self._costs(name, course, self.scene.tracks[name].poses[-1:])[0])
+            found = run_outs(self.scene, name, 0) if now >= _TOLD else None
+            if found is not None and found.sample > blow:
+                self._finish(name, self._costs(name, course, found.ways[-1]) + found.odd, found, now - _TOLD / 2)
+
+    def _finish(self, name: str, costs: Floats, found: RunOuts, most: float) -> None:
+        """Takes the first of the best run-outs of a vehicle with which the whole scene is nearer to what is stated."""
+        scene, before, least = self.scene, self.scene.runs, self.cost()
+        able = (n for n in np.argsort(costs, kind="stable")[:_LAST_RUNS] if costs[n] < most)
+        for n in able:
+            scene.runs = with_run(scene, name, found.runs[int(n)])
+            scene.settle()
+            if self.cost() < least - _TOLD / 2:
+                return
+            scene.runs = before
+        scene.settle()
 
     @property
     def _well(self) -> float:
@@ -134,11 +173,14 @@ class RestFit:
         at_s, end_s = until * STEP_S, (scene.count - 4) * STEP_S
         drags = [scene.drag(scene.tracks[name]) for name in free]
         upright = [not rolls_over(self.wanted[name]) for name in free]
-        runs = [all_runs(at_s, drag.across, on_wheels=on) for drag, on in zip(drags, upright, strict=True)]
         released = [Released(wreck.named[name].body, at_s) for name in free]
+        runs = [
+            all_runs(at_s, drag.across, one.body.speed, on_wheels=on)
+            for one, drag, on in zip(released, drags, upright, strict=True)
+        ]
         each = run_out_paths(released, drags, runs, end_s, _COARSE_S)
         for name, drag, mine, ways in zip(free, drags, runs, each, strict=True):
-            odd = oddities(mine, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE)
+            odd = oddities(mine, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE) + loops(ways, _COARSE_S)
             judge = partial(self._costs, name, self.wanted[name])
             found.vehicles[name] = VehicleWays(mine, ways, odd, judge, scene.tracks[name].size)
         return found
@@ -148,6 +190,7 @@ class RestFit:
         """The cost of the settled scene: its distance from what is stated."""
         ends = {name: self.scene.tracks[name].poses[-1:] for name in self.wanted}
         missed = sum(MISSED for pair in self.scene.again if not self._meet_again(pair))
+        missed += 0.0 if self.order is None or self.order.kept else _PARTED
         return missed + sum(float(self._costs(name, course, ends[name])[0]) for name, course in self.wanted.items())
 
     def _meet_again(self, pair: frozenset[str]) -> bool:
@@ -159,7 +202,7 @@ class RestFit:
         errors = rest_errors(course.rest, ends, self._came_rad(name), self.surface)
         total = np.zeros(len(ends))
         for error, well, scale in zip(
-            errors, (_WELL_RAD, _WELL_M, _WELL_RAD), (FACING_RAD, 5.0, SIDE_RAD), strict=True
+            errors, (_WELL_RAD, _WELL_M, _WELL_RAD), (_FACING_SCALE_RAD, 5.0, SIDE_RAD), strict=True
         ):
             if error is not None:
                 total += _TOLD * (error > 0) + np.maximum(error + well, 0.0) / scale

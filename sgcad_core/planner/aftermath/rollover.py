@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
+from sgcad_core.metrics.rest_error import compass_rad
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.records.course import Attitude, CourseTold
 
@@ -40,6 +41,19 @@ def roll_angles(poses: Floats, hit: int, told: CourseTold) -> Floats:
     roll = np.zeros(len(poses))
     roll[first:] = total * np.minimum(_eased(share), slowest)
     return roll
+
+
+def turned_over(poses: Floats, at: int, told: CourseTold) -> Floats:
+    """(n, 3) poses of a vehicle that rolls over from sample `at` on, turned as it is told to lie while it moves on."""
+    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(poses[at:, :2], axis=0).T))))
+    if told.rest.facing_deg is None or way[-1] <= 0.0:
+        return poses
+    turn = math.remainder(compass_rad(told.rest.facing_deg) - float(poses[-1, 2]), 2 * math.pi)
+    if told.spin and (turn > 0) != (told.spin == "counterclockwise"):
+        turn -= math.copysign(2 * math.pi, turn)
+    turning = poses.copy()
+    turning[at:, 2] += turn * _eased(way / way[-1])
+    return turning
 
 
 def _eased(share: Floats) -> Floats:

@@ -8,12 +8,13 @@ goes on to another one, else it is fixed. Knows scenes and their tracks.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from sgcad_core.geometry.plane import SIDES, Floats, Size, gaps_where_near
+from sgcad_core.planner.aftermath.told_order import ToldOrder, touched
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import STEP_S, Motion, stand
 from sgcad_core.planner.scene import Scene, Track
@@ -22,20 +23,25 @@ from sgcad_core.roads.surface import RoadSurface
 
 _AFTER_S = 0.45
 """Duration of the first impact."""
+_BETWEEN = 3
+"""Samples between the last contact and this one."""
 _LEAST_MPS = 2.6
 """A slower impact is hardly one, and files whose vertices lie 0.11 m apart cannot show it."""
 _DEPTH_M = 0.05
 """Overlap of the undisturbed box with the object at the sample of the impact."""
-_GIVES_WAY_KG = 60.0
-"""Mass of objects that give way: a breakaway post, a sign, a piece of fence."""
 _ALL_TOLD = 1.0
 """A rest with a lower cost misses no stated part."""
 _PAST_M = (6.0, 10.0, 16.0, 25.0, 40.0, 60.0)
 _OFF_ROAD_M = 0.3
+_GENTLE_MPS = 0.8
+"""Taken where the vehicle is no faster any more."""
+_RANKS = 2
+"""Kinds of places (on or off the road, before the told side or another one) that are tried."""
 _OUTWARD_MPS = 0.5
 """Outward speed of a side of the box that can strike an object."""
 _LATE, _EARLY = (0.95, 0.7, 0.45, 0.2), (0.1, 0.25, 0.4, 0.6)
-"""Places to try, as shares of those with a visible impact: early where the vehicle goes on."""
+"""Places to try, as shares of those with a visible impact: early where further contacts follow, and among many of them
+at the place that leaves each an equal share of the way."""
 
 
 @dataclass(frozen=True)
@@ -49,17 +55,14 @@ class Strike:
     """Whether the same vehicle strikes something else later."""
     aside: float = 0.0
     """Offset to the left of the middle of the side, as a share of it: objects struck in a row stand on both sides."""
+    thing_side: Area = "front"
+    """The side of the object that touches."""
 
 
-def strike_things(
-    scene: Scene, strikes: Sequence[Strike], surface: RoadSurface, cost: Callable[[], float]
-) -> Iterator[str]:
-    """Places every object in order; notes on those that are not reached. `cost`: of the rest as settled."""
-    for strike in strikes:
-        if not _placed(scene, strike, surface, cost):
-            _stand(scene, strike, _out_of_reach(scene, strike))
-            scene.settle()
-            yield f"{strike.by} does not reach {strike.thing.id}, which it strikes as told"
+def leave_beside(scene: Scene, strike: Strike) -> None:
+    """Places an object that is not reached beyond the rest of its vehicle."""
+    _stand(scene, strike, _out_of_reach(scene, strike))
+    scene.settle()
 
 
 def _out_of_reach(scene: Scene, strike: Strike) -> Floats:
@@ -73,51 +76,59 @@ def _out_of_reach(scene: Scene, strike: Strike) -> Floats:
     return pose
 
 
-def _placed(scene: Scene, strike: Strike, surface: RoadSurface, cost: Callable[[], float]) -> bool:
-    """Places the object where the rest is best; False where no place is struck."""
+def place_thing(
+    scene: Scene, strike: Strike, surface: RoadSurface, cost: Callable[[], float], order: ToldOrder, *, more: int
+) -> bool:
+    """Places an object where the rest is best; False where no place is struck next in order.
+
+    `cost`: of the rest as settled. `more`: number of contacts that follow.
+    """
     best: tuple[float, Track] | None = None
-    base, before = {name: track.poses for name, track in scene.tracks.items()}, list(scene.touches)
-    for pose in _places(scene, strike, surface):
+    for pose in _places(scene, strike, surface, order.after, more=more):
         track = _stand(scene, strike, pose)
         scene.settle()
-        if _is_struck(scene, strike) and (best is None or cost() < best[0]):
+        if _is_struck(scene, strike, order) and (best is None or cost() < best[0]):
             best = (cost(), track)
-        done = best is not None and (strike.goes_on or best[0] < _ALL_TOLD)
         del scene.tracks[strike.thing.id]
-        scene.touches = before
-        for name, poses in base.items():
-            scene.tracks[name].poses = poses
-        if done:
+        if best is not None and (more or best[0] < _ALL_TOLD):
             break
-    if best is None:
-        return False
-    scene.tracks[strike.thing.id] = best[1]
+    if best is not None:
+        scene.tracks[strike.thing.id] = best[1]
+        order.pairs.append(frozenset((strike.by, strike.thing.id)))
     scene.settle()
-    return True
+    return best is not None
 
 
-def _is_struck(scene: Scene, strike: Strike) -> bool:
-    """Whether the object is struck by its vehicle first, after the first contact of all."""
+def _is_struck(scene: Scene, strike: Strike, order: ToldOrder) -> bool:
+    """Whether the object is struck by its vehicle first, next in told order."""
     hits = [t for t in scene.touches if strike.thing.id in (t.first, t.second)]
-    return bool(hits) and strike.by in (hits[0].first, hits[0].second) and hits[0] is not scene.touches[0]
+    pair = frozenset((strike.by, strike.thing.id))
+    return bool(hits) and touched(hits[0]) == pair and hits[0] is not scene.touches[0] and order.holds(pair)
 
 
-def _stand(scene: Scene, strike: Strike, pose: Floats) -> Track:
+def standing_track(scene: Scene, thing: Actor, pose: Floats, *, fixed: bool = False) -> Track:
+    """An actor that stands at a pose all the time, not yet part of the scene."""
     x, y, heading = (float(v) for v in pose)
     line = np.array([[x, y], [x + 0.01 * math.cos(heading), y + 0.01 * math.sin(heading)]])
     path = Path(line, np.array([0.0, 0.01]), np.full(2, heading))
-    size = size_m(strike.thing)
-    motion = Motion(path, *stand(path, 0.0), size, np.zeros(2), -math.inf, standing=True, fixed=not strike.goes_on)
-    track = scene.add(strike.thing.id, strike.thing.kind, motion, 0.0, brakes=False)
-    track.mass = _GIVES_WAY_KG if strike.goes_on and strike.thing.record.thing else None
+    size = size_m(thing)
+    motion = Motion(path, *stand(path, 0.0), size, np.zeros(2), -math.inf, standing=True, fixed=fixed)
+    return Track(thing.id, thing.kind, size, scene.poses(motion, 0.0, brakes=False), motion, 0.0)
+
+
+def _stand(scene: Scene, strike: Strike, pose: Floats) -> Track:
+    track = standing_track(scene, strike.thing, pose, fixed=not strike.goes_on)
+    scene.tracks[strike.thing.id] = track
+    if strike.goes_on:
+        track.give_way()
     return track
 
 
 # ------------------------------------------------------------------ where
-def _places(scene: Scene, strike: Strike, surface: RoadSurface) -> list[Floats]:
+def _places(scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, more: int) -> list[Floats]:
     """(3,) poses on the way of the vehicle, best first: off the road before on it, the stated side before others."""
     size, track = size_m(strike.thing), scene.tracks[strike.by]
-    samples = _samples(scene, strike, track)
+    samples = _samples(scene, strike, track, after)
     found = [(rank, pose) for k in samples for rank, pose in _beside(track, int(k), strike, size)
              if _is_free(scene, strike, pose, size, int(k))]  # fmt: skip
     if not found:
@@ -125,19 +136,23 @@ def _places(scene: Scene, strike: Strike, surface: RoadSurface) -> list[Floats]:
     poses = np.array([pose for _, pose in found])
     on_road = surface.off(poses[:, :2])[0] <= _OFF_ROAD_M
     ranks = np.array([rank for rank, _ in found]) + 10 * on_road
-    chosen = np.flatnonzero(ranks == ranks.min())
-    shares = _EARLY if strike.goes_on else _LATE
-    return [poses[chosen[i]] for i in dict.fromkeys(round(share * (len(chosen) - 1)) for share in shares)]
+    shares = (0.6 / (more + 1), *_EARLY) if more else _LATE
+    ordered: list[Floats] = []
+    for rank in np.unique(ranks)[:_RANKS]:
+        chosen = np.flatnonzero(ranks == rank)
+        ordered += [poses[chosen[i]] for i in dict.fromkeys(round(share * (len(chosen) - 1)) for share in shares)]
+    return ordered
 
 
-def _samples(scene: Scene, strike: Strike, track: Track) -> Floats:
-    """Samples after the last impact at which the vehicle still moves."""
-    blows = [t.t_s for t in scene.touches if strike.by in (t.first, t.second)]
-    if not blows:
-        return np.zeros(0)
-    begins = round((max(blows) + _AFTER_S) / STEP_S)
+def _samples(scene: Scene, strike: Strike, track: Track, after: int) -> Floats:
+    """Samples after its last impact, and behind the last told contact, at which the vehicle still moves."""
+    blows = [t.t_s for t in scene.touches if strike.by in (t.first, t.second)] or [scene.contact * STEP_S]
+    begins = max(round((max(blows) + _AFTER_S) / STEP_S), after + _BETWEEN)
     speed = np.hypot(*np.diff(track.poses[:, :2], axis=0).T) / STEP_S
-    moving = np.flatnonzero(speed > _LEAST_MPS)
+    for least in (_LEAST_MPS, _GENTLE_MPS):
+        moving = np.flatnonzero(speed > least)
+        if (moving >= begins).any():
+            break
     return moving[moving >= begins].astype(float) + 1
 
 

@@ -30,6 +30,7 @@ from sgcad_core.planner.aftermath.wreck_bodies import (
     set_on_script,
     shift,
     state_of,
+    throw_aside,
     touch_points,
 )
 from sgcad_core.planner.motion import STEP_S
@@ -49,6 +50,8 @@ _PARTING_MPS = 0.3
 """Speed at which overlapping bodies are moved apart."""
 _HELD_S = 0.11
 """A touch is kept for two samples, so that samples, and files with fewer vertices, show it."""
+_GIVES_S = 0.1
+"""Time for which a thing that gives way is pushed along."""
 _TOLD_S, _TOLD_HELD_S = 0.2, 0.25
 """Time for which the bodies of a stated touch hold, and for which the touch is kept: from a standstill the next vertex
 of a file is only 0.11 m further."""
@@ -79,6 +82,8 @@ class Wreck:
     """Touches of these pairs that are over."""
     touches: dict[tuple[str, str], float] = field(default_factory=dict)
     """Pairs that touched, with the time of it."""
+    gone: set[tuple[str, str]] = field(default_factory=set)
+    """Pairs of which one gave way to the other."""
     now: float = 0.0
 
     def __post_init__(self) -> None:
@@ -135,8 +140,9 @@ class Wreck:
         for m in self.movers:
             if not m.free:
                 set_on_script(m, k)
-        near, fastest = self._near(pairs)
         self.now, end = k * STEP_S, (k + 1) * STEP_S
+        self._let_go()
+        near, fastest = self._near(pairs)
         seen = None
         while self.now < end - 1e-9:
             step = min(self._step(near, seen or separations(near)), end - self.now)
@@ -153,7 +159,17 @@ class Wreck:
 
         A light body gets faster than both when a heavy one strikes it, and may reach bodies that were out of reach.
         """
-        return [pair for pair in pairs if may_meet(*pair)], [m.body.speed + _FASTER_MPS for m in self._movable]
+        left = [pair for pair in pairs if key_of(*pair) not in self.gone] if self.gone else pairs
+        return [pair for pair in left if may_meet(*pair)], [m.body.speed + _FASTER_MPS for m in self._movable]
+
+    def _let_go(self) -> None:
+        """Throws things that give way aside once their touch was seen; their vehicles then pass them."""
+        for key, since in self.touches.items():
+            a, b = (self.named[name] for name in key)
+            if a.gives_way != b.gives_way and key not in self.gone and self.now - since >= _GIVES_S:
+                thing, by = (a, b) if a.gives_way else (b, a)
+                throw_aside(thing.body, by.body)
+                self.gone.add(key)
 
     def _show(self, near: Sequence[Pair], sample: int) -> None:
         """Leaves the touches of this sample overlapping at its end, after any rotation."""
@@ -184,7 +200,7 @@ class Wreck:
             one.y += one.vy * step
             one.heading += one.spin * step
             if m.free:
-                apply_friction(one, m.drag, step, left, m.run if m.run and self.now >= m.run.from_s else None, self.now)
+                apply_friction(one, m.drag, step, left, m.run_at(self.now), self.now)
 
     # -------------------------------------------------------------- touches
     def _resolve(self, near: Sequence[Pair], sample: int) -> Sequence[Separation] | None:

@@ -19,6 +19,9 @@ from sgcad_core.planner.aftermath.impact import Body, Point
 from sgcad_core.planner.motion import STEP_S
 
 Pair = tuple["Mover", "Mover"]
+_ASIDE_S, _PASSES_M = 0.25, 0.15
+"""Time in which a thing that gives way is out of the way, and the gap at which it is then passed."""
+_LEAST_ASIDE_MPS, _MOST_ASIDE_MPS = 1.0, 8.0
 _NEAR_M = 0.03
 """Corners this close to the other box take part in a touch."""
 
@@ -31,11 +34,17 @@ class Mover:
     body: Body
     script: Floats
     drag: Drag
-    run: RunOut | None = None
-    """The run-out; None: it slides with its drag."""
+    runs: tuple[RunOut, ...] = ()
+    """Its run-outs, each from its time on; before the first it slides with its drag."""
     free: bool = False
     hit: int | None = None
     """The last sample before its first touch takes effect."""
+    gives_way: bool = False
+    """Whether what strikes it goes on past it."""
+
+    def run_at(self, now_s: float) -> RunOut | None:
+        """The run-out that counts at a time."""
+        return next((run for run in reversed(self.runs) if now_s >= run.from_s), None) if self.runs else None
 
     @property
     def fixed(self) -> bool:
@@ -65,6 +74,17 @@ def shift(a: Mover, b: Mover, seen: Separation, by_m: float) -> None:
         share = sign * by_m * one.inverse_mass / total
         one.x += share * seen.normal[0]
         one.y += share * seen.normal[1]
+
+
+def throw_aside(thing: Body, by: Body) -> None:
+    """Gives a struck thing the speed of what struck it, and throws it to the nearer side of the way of that."""
+    dx, dy, off = thing.x - by.x, thing.y - by.y, thing.heading - by.heading
+    c, s = math.cos(by.heading), math.sin(by.heading)
+    left = dy * c - dx * s
+    across = (thing.size[0] * abs(math.sin(off)) + thing.size[1] * abs(math.cos(off))) / 2
+    clear = by.size[1] / 2 + across + _PASSES_M - abs(left)
+    aside = math.copysign(min(max(clear / _ASIDE_S, _LEAST_ASIDE_MPS), _MOST_ASIDE_MPS), left)
+    thing.vx, thing.vy, thing.spin = by.vx - aside * s, by.vy + aside * c, 0.0
 
 
 def separations(near: Sequence[Pair]) -> list[Separation]:

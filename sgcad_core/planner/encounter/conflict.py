@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
-from sgcad_core.planner.actor_plan import Role, speed_there
+from sgcad_core.planner.actor_plan import Role, is_standing, speed_there
 from sgcad_core.planner.encounter.meeting_place import TURNING, Place, meeting_places, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option, aimed, forced, options, plainly, slid, spun, turned
 from sgcad_core.planner.encounter.pairing import Encounter, Ways, cannot, search
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
 from sgcad_core.records.course import Courses, CourseTold
-from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
+from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact, size_m
 
 _TRIES = (16, 26, 24, 400)
 """Combinations of options tried in each stage of the search."""
@@ -45,16 +45,33 @@ class Conflicts:
         self.actors = {a.id: a for a in self.behavior.actors}
 
     def as_they_drive(self, conflict: Contact) -> Encounter | None:
-        """A conflict of a pair in ordinary driving, on any sides; other driving only where they never meet."""
+        """A conflict of a pair in ordinary driving, on any sides and on any line of a turn.
+
+        None where their ways never meet so: no lane is left for a conflict that is avoided.
+        """
         a, b = self._roles(conflict)
-        ordinary = [((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])]
+        ordinary = [((self._options(a, b, _unturned), self._options(b, a, _unturned)), _TRIES[0])]
         sides = (conflict.striker_area, conflict.struck_area)
-        return search(ordinary, sides) or search(ordinary, None) or self.of(conflict)
+        turns = [((self._options(a, b, turned), self._options(b, a, turned)), _TURNING)]
+        found = search(ordinary, sides) or search(ordinary, None) or search([*ordinary, *turns], None)
+        if found is None:
+            self.notes.append(f"the ways of {conflict.striker} and {conflict.struck} never meet in ordinary driving")
+        return found
 
     def of(self, contact: Contact) -> Encounter | None:
         """The encounter of the declared pair; None where the two cannot be brought together."""
-        a, b = self._roles(contact)
         wanted = (contact.striker_area, contact.struck_area)
+        found = self._kept_or_forced(self._roles(contact), contact, wanted)
+        if found is None:  # drawn and told as odd driving: the account finds it, and the verdict is never "whole"
+            a, b = (replace(role, leaves_lanes=True) for role in self._roles(contact))
+            found = search(self._stages(a, b), wanted)
+            if found is not None:
+                self.notes.append(f"{contact.striker} and {contact.struck} touch only out of their lanes")
+        return found
+
+    def _kept_or_forced(self, pair: tuple[Role, Role], contact: Contact, wanted: tuple[Area, Area]) -> Encounter | None:
+        """The encounter within the lanes, by force or on other sides; None where their ways never meet there."""
+        a, b = pair
         found = search(self._stages(a, b), wanted)
         if found is None and self.by_force:
             found = search([((self._options(a, b, slid), self._options(b, a, slid)), _LAST_TRIES)], wanted)
@@ -85,11 +102,18 @@ class Conflicts:
         places = self._places(a, b)
         pair = [
             Role(actor, self.courses[actor.id], size_m(actor), place, side, surface=self.behavior.surface,
-                 may_skid=self.may_skid, told=self.told.get(actor.id, CourseTold()), pushed=actor.id in self.pushed)
+                 may_skid=self.may_skid, told=self.told.get(actor.id, CourseTold()), pushed=actor.id in self.pushed,
+                 goes_on=self._goes_on(actor.id, contact))
             for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
         ]  # fmt: skip
         first, second = pair
         return _facing_other(first, second), _facing_other(second, first)
+
+    def _goes_on(self, actor: str, contact: Contact) -> bool:
+        """Whether an actor on wheels strikes something else after a contact."""
+        told = list(self.behavior.contacts)
+        later = told[told.index(contact) + 1 :] if contact in told else []
+        return self.actors[actor].record.wheeled and any(c.striker == actor for c in later)
 
     def _set_rolling(self, a: Actor, b: Actor) -> Actor:
         mover = b if a.record.thing else a
@@ -123,6 +147,13 @@ class Conflicts:
         return sorted(found, key=lambda option: option.cost)
 
 
+def _unturned(role: Role) -> list[Option]:
+    """The options that steer no more than the maneuver asks; those of standing actors and things are all of them."""
+    if is_standing(role):
+        return options(role)
+    return [option for option in options(role) if not option.twist.angle_rad and not option.drift.note]
+
+
 def _facing_other(role: Role, other: Role) -> Role:
     """A role with the data on the other actor that it depends on."""
     return replace(
@@ -132,4 +163,5 @@ def _facing_other(role: Role, other: Role) -> Role:
         other_side=other.side,
         other_road=other.actor.road,
         other_spins=bool(other.spins),
+        other_lost=other.told.lost_control,
     )

@@ -31,6 +31,8 @@ _SWERVE_MPS2 = 6.0
 _OVER_CRUISE = 1.35
 """Highest speed when accelerating, over the planned one."""
 _LASTS_S = 14.0
+_PASSES_S = 2.0
+"""Time beside the other one before the way back into the lane."""
 
 
 class Reaction(NamedTuple):
@@ -79,7 +81,8 @@ def _steered(option: Option, motion: Motion, reaction: Reaction) -> Motion:
     speed = (ahead - station) / STEP_S
     left = abs(reaction.left_m)
     length = max(_EASE * speed * math.sqrt(5.77 * left / _SWERVE_MPS2), 3.3 * left, 4.0)
-    dodge = Drift(0.0, reaction.left_m, length, station + length, note="steers aside")
+    holds = _PASSES_S * speed
+    dodge = Drift(0.0, reaction.left_m, length, station + length, back=True, holds_m=holds, note="steers aside")
     steered = replace(option, dodge=dodge).motion
     late = steered.time_at(station) - reaction.from_s
     return replace(steered, time_s=steered.time_s - late)

@@ -21,6 +21,7 @@ from sgcad_core.planner.actor_plan import (
     usual_speed,
 )
 from sgcad_core.planner.encounter.meeting_place import TURNING
+from sgcad_core.planner.encounter.out_of_lanes import is_out
 from sgcad_core.planner.lines.axle_to_box import tightest
 from sgcad_core.planner.lines.turning import corner_lines
 
@@ -33,14 +34,21 @@ _NOT_EVADING = 0.3
 """Cost of the own line where steering aside is stated."""
 _EVADED_FROM = ("straight", "negotiating_curve", "slowing", "other")
 OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
-OTHER_LANE_COST = 0.45
+OTHER_LANE_COST = 1.0
+"""More than another speed: a told lane is taken wherever the two can meet from it."""
 ASKEW, _STEERS = "stands askew", "steers aside before contact"
+_LEAVES = "leaves its lane"
 SLIDES = "slides into the contact at an angle that no steering explains"
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
 _THROUGH_BEND = 0.35
 """Share of the usual speed when joining from another road, behind the bend."""
 _SLOWER, _FASTER = "drives slower than stated", "drives faster than stated"
+ROLLS_IN = "does not stop where it is told to have stood"
+_ROLLS = 0.6
+"""Cost of rolling into the encounter where a start from rest is stated."""
+_FROM_REST = ((0.0, 1.0), (0.1, 0.6), (0.15, 0.4))
+"""Costs of a start from rest, with the factor on the usual speed that is then reached."""
 
 
 def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
@@ -96,10 +104,10 @@ def _lane_changes(role: Role, further_m: Sequence[float]) -> list[Drift]:
     for ease, cost in ((1.7, 0.0), (1.0, 0.1), (0.6, 0.3), (0.4, 0.45)):
         for more in further_m:
             drift = _halfway(_drift(role, lane + way * more, cost + abs(more) / 8, ease))
-            if abs(target - lane) > 0.5:
-                off_road = _beside_the_road(role, target - lane)
-                found.append(drift._replace(before_m=target - lane, cost=drift.cost + off_road))
-                drift = drift._replace(cost=drift.cost + (0.0 if off_road else 0.3))
+            if abs(target - lane) > 0.5 and not is_out(role, target - lane):
+                elsewhere = OTHER_LANE_COST if role.actor.lane is not None else 0.0
+                found.append(drift._replace(before_m=target - lane, cost=drift.cost + elsewhere))
+                drift = drift._replace(cost=drift.cost + (0.0 if elsewhere else 0.3))
             found.append(drift)
     return found
 
@@ -112,12 +120,6 @@ def _joins(role: Role) -> bool:
 def _from_another_road(role: Role) -> bool:
     """Whether it starts on another road than the other actor."""
     return role.other_road not in (None, role.actor.road)
-
-
-def _beside_the_road(role: Role, left_m: float) -> float:
-    """The cost of a constant offset from the own lane: none on the road, much off it."""
-    half = role.size[1] / 2 - 0.3
-    return 0.6 if left_m + half > role.course.left_edge_m or half - left_m > role.course.right_edge_m else 0.0
 
 
 def _halfway(drift: Drift) -> Drift:
@@ -133,7 +135,7 @@ def _change_way(role: Role) -> float:
         return 1.0 if role.side == "left" or role.other_side == "right" else -1.0
     if abs(role.place.aside_m) > 0.5:
         return math.copysign(1.0, role.place.aside_m)
-    return -1.0 if role.course.opposite_m > 1.5 * role.course.lane_width_m else 1.0
+    return -1.0 if role.course.own_left_m < role.course.lane_width_m < role.course.right_edge_m else 1.0
 
 
 def _maneuver_shift(role: Role) -> float | None:
@@ -161,11 +163,11 @@ def _other_lanes(role: Role) -> list[Drift]:
     """The lanes beside its own, driven from the start: nearly free where no lane is stated."""
     course, stated = role.course, role.actor.lane is not None
     cost, note = (OTHER_LANE_COST, OTHER_LANE) if stated else (0.03, "")
-    rooms = ((1, course.left_edge_m), (-1, course.right_edge_m))
+    rooms = ((1, course.own_left_m), (-1, course.right_edge_m))
     return [
         Drift(cost, sign * course.lane_width_m, 1.0, -1e4, note=note)
         for sign, room in rooms
-        if room > course.lane_width_m and (sign < 0 or course.opposite_m > 1.5 * course.lane_width_m)
+        if room > course.lane_width_m
     ]
 
 
@@ -174,7 +176,7 @@ def _swerves(role: Role) -> list[Drift]:
     found = []
     if place.apart_m > 1.2 and abs(math.sin(place.angle_rad)) < 0.5 and abs(place.aside_m) < 16:
         for extra, cost in ((0.0, 0.3), (0.7, 0.33), (-0.7, 0.33), (1.4, 0.36), (-1.4, 0.36)):
-            found.append(_drift(role, place.aside_m + extra, cost, 1.3, "leaves its lane"))
+            found.append(_drift(role, place.aside_m + extra, cost, 1.3, _LEAVES))
     found += _from_beside(role)
     for left, cost in ((1.8, 0.4), (-1.8, 0.4), (3.3, 0.6), (-3.3, 0.6)):
         found.append(_drift(role, left, cost, 1.0, "swerves"))
@@ -189,10 +191,17 @@ def _from_beside(role: Role) -> list[Drift]:
         return []
     beside = ways[0] * role.course.lane_width_m
     before = role.place.aside_m + beside
-    cost, note = (0.25, "") if abs(before) < 0.5 else (0.35, FROM_OTHER_LANE)
-    cost += _beside_the_road(role, before)
+    if is_out(role, before):
+        return []
+    elsewhere = OTHER_LANE_COST if role.actor.lane is not None else 0.35
+    cost, note = (0.25, "") if abs(before) < 0.5 else (elsewhere, FROM_OTHER_LANE)
     easy = [_drift(role, -beside, cost + more, ease, note) for ease, more in ((1.7, 0.0), (0.8, 0.15), (0.5, 0.3))]
     return [_halfway(drift)._replace(before_m=before) for drift in easy]
+
+
+def lines_to(role: Role, lefts_m: Sequence[float]) -> list[Drift]:
+    """Lines that leave the own one by some distances to the left, the nearest first."""
+    return [_drift(role, left, abs(left) / 10, 1.3, _LEAVES) for left in sorted(lefts_m, key=abs)]
 
 
 def pacings(role: Role) -> list[Pacing]:
@@ -203,6 +212,9 @@ def pacings(role: Role) -> list[Pacing]:
         return [Pacing(cost, factor, True) for cost, factor in ((0.0, 1.0), (0.1, 1.5), (0.15, 0.6))]
     if role.pushed:
         return [Pacing(0.0, 1.0, True)]
+    if role.told.from_rest:
+        started = [Pacing(cost, factor, True) for cost, factor in _FROM_REST]
+        return [*started, Pacing(_ROLLS, 0.6, note=ROLLS_IN), Pacing(_ROLLS + 0.1, 0.3, note=ROLLS_IN)]
     told = _TOLD_SPEED if (role.spins or role.other_spins) and role.actor.speed_mph else 0.0
     found = [Pacing(0.0), *_following(role), Pacing(0.2 + told, 0.75, note=_SLOWER)]
     found += [Pacing(0.3 + told, 1.3, note=_FASTER), Pacing(0.4 + told, 0.5, note=_SLOWER)]

@@ -41,20 +41,19 @@ from sgcad_core.planner.encounter.maneuver_choices import (
     spins,
 )
 from sgcad_core.planner.encounter.meeting_place import TURNING
-from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, cost_outside, misfit, waiting_zone
-from sgcad_core.planner.lines.axle_to_box import bent_before, box_path, easiest, offset, offsets, tightest
+from sgcad_core.planner.encounter.out_of_lanes import OUT, out_of_lanes, stands_out_of_lanes, starts_beside
+from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, cost_outside, in_junction, misfit, waiting_zone
+from sgcad_core.planner.lines.axle_to_box import bent_before, box_path, easiest, offset, tightest
 from sgcad_core.planner.lines.path import Path, ramp, widened_bends
 from sgcad_core.planner.lines.turning import corner_lines
-from sgcad_core.planner.motion import HARD_MPS2, LEAD_S, YAW_RADPS, Motion, Pace, drive, stand
+from sgcad_core.planner.motion import HARD_MPS2, YAW_RADPS, Motion, Pace, drive, stand
 from sgcad_core.planner.stationary_actors import any_angle, askew, beside_the_way, in_stall, stand_offs, steps_aside
 from sgcad_core.records.specs import Area
 
 _SWING_ASIDE_M = 5.0
 """Lateral room for steering aside; beyond it the speed is reduced."""
-_VERGE_M = 3.0
-"""Distance from the road at which a vehicle may start (a shoulder, the mouth of a driveway)."""
-_STARTS_S = np.linspace(-LEAD_S[0] - 1.0, -LEAD_S[0] + 1.0, 5)
-"""Own times at which the shortest approach may begin: the contact lies slightly before or behind the place."""
+_MEETS_S = np.linspace(-2.5, 2.5, 11)
+"""Own times at which nearly all encounters are."""
 _PLAIN = 4
 _LEAST_SWING = 1.2
 """Radius when steering aside, over the tightest of the vehicle."""
@@ -138,12 +137,9 @@ def plainly(role: Role) -> list[Option]:
 
 def turned(role: Role) -> list[Option]:
     """All lines and usual speeds of a turn; the plain options of other maneuvers."""
-    turns = role.course.turn is not None and role.actor.maneuver in TURNING
-    return (
-        _sorted(role, product([Drift(0.0), *corner_lines(role)], pacings(role), (Twist(0.0),)))
-        if turns
-        else plainly(role)
-    )
+    if role.course.turn is None or role.actor.maneuver not in TURNING:
+        return plainly(role)
+    return _sorted(role, product([Drift(0.0), *corner_lines(role)], pacings(role), (Twist(0.0),)))
 
 
 def forced(role: Role) -> list[Option]:
@@ -179,15 +175,20 @@ def driving(option: Option) -> Motion:
     drift, pace = option.drift, _pace(role, option)
     line, path, drivable = _lines(option, pace)
     time, station = drive(line, pace, place, (path, role.course.path))
-    drivable = drivable and not _starts_beside(role, line, np.interp(_STARTS_S, time, station))
+    drivable = drivable and not starts_beside(role, line, (time, station))
     path = _skidding(path, option.twist, place, pace.cruise_mps)
     begins = _begins(role, drift)
     penalty = misfit(role, path, drift, begins)
+    if drift.left_m or drift.before_m or option.twist.angle_rad or option.dodge:
+        out = out_of_lanes(role, path, (time, station))
+        penalty += out
+        drivable = drivable and bool(np.interp(np.interp(_MEETS_S, time, station), path.s_m, out).min() < OUT)
     if pace.starts_at_m is not None:
         penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + (PUSHED_M / 2 if role.pushed else _UNDER_WAY_M))
     if pace.brakes and pace.slow_at_m is not None:
         penalty = penalty + _UNBRAKED * (path.s_m < pace.slow_at_m - _UNDER_WAY_M)
-    return Motion(path, time, station, role.size, penalty, begins, axle=line, drivable=drivable)
+    starts = float(time[0]) if option.pacing.from_stop and not role.pushed else None
+    return Motion(path, time, station, role.size, penalty, begins, axle=line, drivable=drivable, starts_s=starts)
 
 
 def _lines(option: Option, pace: Pace) -> tuple[Path, Path, bool]:
@@ -216,12 +217,6 @@ def _boxed(role: Role, line: Path) -> tuple[Path, Path, bool]:
     return replace(line, s_m=path.s_m), path, drivable
 
 
-def _starts_beside(role: Role, line: Path, stations_m: Floats) -> bool:
-    """Whether a line is far off the road where the shortest approach may begin."""
-    left = offsets(role.course.path, line, stations_m)[1]
-    return bool(left.max() > role.course.left_edge_m + _VERGE_M or -left.min() > role.course.right_edge_m + _VERGE_M)
-
-
 def _steered(line: Path, option: Option, pace: Pace) -> Path:
     """The line turned before the meeting place, unless the box skids."""
     twist, role, place = option.twist, option.role, option.role.place
@@ -247,7 +242,9 @@ def standing(option: Option) -> Motion:
     path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
     time, station = stand(path, role.place.station_m)
     penalty = cost_outside(path.s_m, *waiting_zone(role), OUT_OF_GORE if role.actor.gore else 0.03)
-    return Motion(path, time, station, role.size, penalty, -math.inf, standing=True, fixed=role.actor.record.thing)
+    penalty += in_junction(role, path.s_m)
+    kept, thing = not stands_out_of_lanes(role, option.drift.left_m, option.twist.angle_rad), role.actor.record.thing
+    return Motion(path, time, station, role.size, penalty, -math.inf, standing=True, fixed=thing, drivable=kept)
 
 
 def in_the_way(option: Option, other: Option) -> Motion:

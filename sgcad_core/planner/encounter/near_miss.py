@@ -35,6 +35,8 @@ _ALONG_RAD = 0.6
 _KEEPS = 0.85
 """Speed after braking behind a moving vehicle, over that of the vehicle."""
 _AFTER_S = 5.0
+_TO_EDGE_M = 0.3
+"""From the middle of a box to the edge of its lanes at least."""
 _BRAKING_TOO: dict[EvasiveManeuver, EvasiveManeuver] = {
     "steering": "braking_and_steering", "steering_left": "braking_and_steering_left",
     "steering_right": "braking_and_steering_right",
@@ -68,6 +70,12 @@ class _Side(NamedTuple):
     @property
     def may_evade(self) -> bool:
         return not self.motion.standing and not self.option.role.actor.record.thing
+
+    def within_lanes(self, reaction: Reaction) -> Reaction:
+        """A reaction with no more steering than keeps it in the lanes of its direction."""
+        course = self.option.role.course
+        low, high = -course.right_edge_m + _TO_EDGE_M, course.own_left_m - _TO_EDGE_M
+        return reaction._replace(left_m=min(max(reaction.left_m, min(low, 0.0)), max(high, 0.0)))
 
     def velocity(self, after_s: float = 0.0) -> tuple[float, float]:
         """Velocity at a time after the contact, m/s."""
@@ -114,11 +122,12 @@ class _Parting:
         """As stated; else by other means, with a note."""
         told = [e for e in near.evasions if e.maneuver != "none"]
         follows = near.conflict.striker_area == "front" and near.conflict.struck_area == "back"
-        as_told = self._evaded(told) if told else None if follows else self._shifted()
+        parted = (self._evaded(told, told=False) or self._evaded(told)) if told else None
+        as_told = parted if told else None if follows else self._shifted()
         if as_told is not None:
             return as_told
         for evasion in self._instead(near):
-            if parted := self._evaded([evasion]):
+            if parted := self._evaded([evasion], told=False):
                 words = "evades otherwise than told" if told else "evades, though nobody says so"
                 return parted._replace(notes=(f"{evasion.actor} {words}", *parted.notes))
         return self._shifted() if told or follows else None
@@ -134,14 +143,18 @@ class _Parting:
             yield Evasion(actor=name, maneuver=maneuver)
 
     # -------------------------------------------------------------- evasions
-    def _evaded(self, evasions: list[Evasion]) -> NearMiss | None:
-        """The latest start and the least share that leave the clearance; usual braking before emergency braking."""
+    def _evaded(self, evasions: list[Evasion], *, told: bool = True) -> NearMiss | None:
+        """The latest start and the least share that leave the clearance; usual braking before emergency braking.
+
+        Steering stays within the lanes unless it is `told`.
+        """
         acting = [(side, e.maneuver) for e in evasions for side in self.sides if side.id == e.actor and side.may_evade]
         if not acting:
             return None
         sides = (1.0, -1.0) if any(m.endswith("steering") for _, m in acting) else (1.0,)
         for hard, onset, left in product((1.0, _HARD), ONSETS_S, sides):
             most = {s.id: self._most(s, m, onset, left)._replace(hard=hard) for s, m in acting}
+            most = most if told else {s.id: s.within_lanes(most[s.id]) for s, _ in acting}
             if (share := self._share(most)) is not None:
                 return self._told(acting, most, share, onset)
         return None

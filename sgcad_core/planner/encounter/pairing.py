@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from sgcad_core.planner.encounter.encounter_search import Meeting, find_meeting
 from sgcad_core.planner.encounter.motion_options import Option
+from sgcad_core.planner.encounter.out_of_lanes import OUT
 from sgcad_core.records.specs import Area, Contact
 
 _GOOD = 1.95
@@ -73,7 +74,9 @@ def _meeting(a: Option, b: Option, wanted: tuple[Area, Area] | None) -> Meeting 
     one, two = a.motion_with(b), b.motion_with(a)
     if not one.drivable or not two.drivable:
         return None
-    return find_meeting(one, two, wanted, (a.role.spins, b.role.spins), glances=a.role.glances and b.role.glances)
+    glances = (a.role.glances and b.role.glances) or a.role.goes_on or b.role.goes_on
+    found = find_meeting(one, two, wanted, (a.role.spins, b.role.spins), glances=glances)
+    return found if found is not None and found.cost < OUT else None
 
 
 def _pairs(first: Sequence[Option], second: Sequence[Option], most: int) -> Iterator[tuple[Option, Option]]:

@@ -25,6 +25,8 @@ OUT_OF_GORE, _INTO_GORE_M = 0.5, 8.0
 """Cost of each metre between the encounter and the gore of one actor, and the distance into the gore."""
 _BEFORE_TURN_M = 12.0
 """Distance before a turn at which the box still points along the road: it starts to turn before the junction."""
+_IN_JUNCTION = 0.8
+"""Cost of standing in a junction where a stop is told: drivers wait before it."""
 _UNSTEERED, _STEERED_M = 0.3, 0.4
 """Cost of a stated evasion of which less is visible before the contact."""
 
@@ -63,6 +65,18 @@ def _unmoved(role: Role, path: Path, drift: Drift) -> Floats:
 def cost_outside(s_m: Floats, low: float, high: float, per_m: float) -> Floats:
     """(n,) a cost per metre outside a span of stations."""
     return per_m * (np.maximum(low - s_m, 0.0) + np.maximum(s_m - high, 0.0))
+
+
+def in_junction(role: Role, s_m: Floats) -> Floats:
+    """(n,) the cost of standing in a junction of three roads or more, for one that is told to have stopped."""
+    cost: Floats = np.zeros(len(s_m))
+    if role.actor.maneuver != "stopped" or role.actor.gore:
+        return cost
+    half = role.size[0] / 2
+    for crossed in role.course.passages:
+        if crossed.is_junction and not crossed.around:
+            cost += _IN_JUNCTION * ((s_m > crossed.entry_m - half) & (s_m < crossed.exit_m + half))
+    return cost
 
 
 def waiting_zone(role: Role) -> tuple[float, float]:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact
 from sgcad_core.planner.encounter.encounter_search import along_sides
 from sgcad_core.planner.encounter.motion_options import Option
+from sgcad_core.planner.encounter.out_of_lanes import OUT
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.scene import Scene
 
@@ -76,7 +77,8 @@ def _along(found: Encounter, factors: tuple[float, float]) -> Iterator[Encounter
     one, two = first.motion_with(second), second.motion_with(first)
     if one.drivable and two.drivable:
         for meeting in along_sides(one, two, found.meeting.sides, _PLACES):
-            yield Encounter(first, second, meeting)
+            if meeting.cost < OUT:
+                yield Encounter(first, second, meeting)
 
 
 def _paced(option: Option, factor: float) -> Option | None:

@@ -74,6 +74,8 @@ class Course:
     """To the middle of what lies beside the lanes (biking, parking, shoulder, sidewalk), right of the own lane."""
     stalls: bool = False
     """Whether vehicles park square to the line: an aisle of a parking lot."""
+    own_left_m: float = math.inf
+    """To the left edge of the lanes of its direction; beyond lies the median or the other direction."""
     astray: bool = False
     """Whether the requested route does not exist: another one was taken, or one off the road."""
 
@@ -93,7 +95,7 @@ class Course:
         return replace(
             self, path=self.path.reversed(), start_m=-self.end_m, end_m=-self.start_m, passages=passages, turn=None,
             crosswalks=tuple(-s for s in reversed(self.crosswalks)), beside_m={},
-            roads=roads, left_edge_m=self.right_edge_m, right_edge_m=self.left_edge_m,
+            roads=roads, left_edge_m=self.right_edge_m, right_edge_m=self.left_edge_m, own_left_m=math.inf,
         )  # fmt: skip
 
 
@@ -169,13 +171,13 @@ def _measured(
         passages.append(Passage(way.to_node, float(a), float(b), _degree(graph, way.to_node) >= 3, around, cones_m))
         turn = passages[-1] if piece.way == route.turn or piece.way == len(route.ways) else turn
     own = next(i for i, p in enumerate(pieces) if p.way == route.start and not p.is_crossing)
-    opposite, left, right = _room(graph, route.ways[route.start], lane)
+    opposite, own_left, left, right = _room(graph, route.ways[route.start], lane)
     return Course(
         path=path, start_m=float(stations[own]), end_m=float(stations[-1]), passages=tuple(passages), turn=turn,
         lane_width_m=lane.width_m, opposite_m=opposite, left_edge_m=left, right_edge_m=right,
         limit_mps=lane.speed_mps, roads=tuple(roads), notes=notes, crosswalks=_crosswalks(graph, path),
         beside_m=_beside(graph, route.ways[route.start], right),
-        stalls=_has_stalls(graph, route.ways[route.start]), astray=route.astray,
+        stalls=_has_stalls(graph, route.ways[route.start]), own_left_m=own_left, astray=route.astray,
     )  # fmt: skip
 
 
@@ -207,18 +209,19 @@ def _degree(graph: LaneGraph, node: str) -> int:
     return len({road_of(e.id)[0] for e in graph.edges.values() if node in (e.from_node, e.to_node)})
 
 
-def _room(graph: LaneGraph, way: Way, lane: Lane) -> tuple[float, float, float]:
-    """To the nearest opposing lane center, the left edge and the right edge of the road, metres."""
+def _room(graph: LaneGraph, way: Way, lane: Lane) -> tuple[float, float, float, float]:
+    """To the nearest opposing lane center, the left edge of its direction's lanes, the left and the right edge of the
+    road, metres."""
     side = from_right(way, lane)
     right = lane.width_m / 2 + sum(other.width_m for other in way.lanes[:side])
     left = lane.width_m / 2 + sum(other.width_m for other in way.lanes[side + 1 :])
     road, direction = road_of(way.id)
     back = graph.edges.get(edge_id(road, "backward" if direction == "forward" else "forward"))
     if back is None or way.wrong_way:
-        return left + lane.width_m / 2, left, right
+        return left + lane.width_m / 2, left, left, right
     facing = (back.car_lanes or back.lanes)[-1]
     gap = _distance(lane.shape, facing.shape)
-    return gap, gap - facing.width_m / 2 + sum(other.width_m for other in back.lanes), right
+    return gap, left, gap - facing.width_m / 2 + sum(other.width_m for other in back.lanes), right
 
 
 def _distance(first: Floats, second: Floats) -> float:

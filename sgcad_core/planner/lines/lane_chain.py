@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sgcad_core.planner.lines.route import Route, Way
+from sgcad_core.planner.lines.route import Route, Way, turn_angle
 from sgcad_core.records.specs import Actor
 from sgcad_core.roads.closures import merging_line, taper_of
-from sgcad_core.roads.lane_graph import Connection, Lane, LaneGraph
+from sgcad_core.roads.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
 
+_ONWARD_RAD = 0.6
+"""A way that turns less goes straight on."""
 _CHANGES = ("lane_change_left", "lane_change_right", "merge", "overtaking")
 
 
@@ -31,6 +33,8 @@ def lane_chain(
 
 def _first_lane(graph: LaneGraph, route: Route, actor: Actor, notes: list[str]) -> Lane:
     way = route.ways[route.start]
+    if actor.lane == len(way.lanes) + 1 and (center := center_lane(graph, way)) is not None:
+        return center
     if actor.lane is not None:
         if actor.lane > len(way.lanes):
             notes.append(f"{actor.id}: lane {actor.lane} of {way.road} taken as {len(way.lanes)}, its leftmost")
@@ -43,7 +47,27 @@ def _first_lane(graph: LaneGraph, route: Route, actor: Actor, notes: list[str]) 
     return linked[-1 if leftmost or actor.maneuver == "lane_change_right" else 0]
 
 
+def center_lane(graph: LaneGraph, way: Way) -> Lane | None:
+    """The two-way left-turn lane of a road as a way drives it; None where it has none.
+
+    It belongs to the forward edge. Backward it has no number of its own: no connection leads out of it there.
+    """
+    road, direction = road_of(way.id)
+    edge = graph.edges.get(edge_id(road, "forward"))
+    lane = edge.center_lane if edge and not way.wrong_way else None
+    if lane is None or direction == "forward":
+        return lane
+    return replace(lane, index=-1, shape=lane.shape[::-1])
+
+
+def _is_center(graph: LaneGraph, way: Way, lane: Lane) -> bool:
+    center = center_lane(graph, way)
+    return center is not None and (center.id, center.index) == (lane.id, lane.index)
+
+
 def _next_lane(graph: LaneGraph, way: Way, lane: Lane, onward: Way) -> tuple[Connection | None, Lane]:
+    if _is_center(graph, way, lane):
+        return _out_of_center(graph, way, lane, onward)
     between = [c for c in graph.leaving(way.id, lane.index) if c.to_edge == onward.id]
     by_index = {other.index: other for other in onward.lanes}
     between = [c for c in between if c.to_lane in by_index]
@@ -54,7 +78,20 @@ def _next_lane(graph: LaneGraph, way: Way, lane: Lane, onward: Way) -> tuple[Con
     return None, onward.lanes[min(from_right(way, lane), len(onward.lanes) - 1)]
 
 
+def _out_of_center(graph: LaneGraph, way: Way, lane: Lane, onward: Way) -> tuple[Connection | None, Lane]:
+    """Out of a center turn lane: on in that of the road ahead, else into the leftmost lane."""
+    links = {c.to_lane: c for c in graph.leaving(way.id, lane.index) if c.to_edge == onward.id}
+    ahead = center_lane(graph, onward) if abs(turn_angle(way, onward)) < _ONWARD_RAD else None
+    goal = ahead or onward.lanes[-1]
+    return links.get(goal.index), goal
+
+
 def _previous_lane(graph: LaneGraph, way: Way, onward: Way, lane: Lane) -> tuple[Connection | None, Lane]:
+    if _is_center(graph, onward, lane):
+        before = center_lane(graph, way) if abs(turn_angle(way, onward)) < _ONWARD_RAD else None
+        links = {c.from_lane: c for c in graph.leaving(way.id) if (c.to_edge, c.to_lane) == (onward.id, lane.index)}
+        source = before or way.lanes[-1]
+        return links.get(source.index), source
     by_index = {other.index: other for other in way.lanes}
     into = [c for c in graph.leaving(way.id) if (c.to_edge, c.to_lane) == (onward.id, lane.index)]
     into = [c for c in into if c.from_lane in by_index]
@@ -64,8 +101,8 @@ def _previous_lane(graph: LaneGraph, way: Way, onward: Way, lane: Lane) -> tuple
 
 
 def from_right(way: Way, lane: Lane) -> int:
-    """Number of lanes to the right of a lane."""
-    return next((i for i, other in enumerate(way.lanes) if other.index == lane.index), 0)
+    """Number of lanes to the right of a lane; a center turn lane has all of its way there."""
+    return next((i for i, other in enumerate(way.lanes) if other.index == lane.index), len(way.lanes))
 
 
 def merged(

@@ -27,16 +27,20 @@ def corner_lines(role: Role) -> list[Drift]:
 
 
 def _from_the_right(role: Role, turn: Passage) -> list[Drift]:
-    """A left turn from the next lane to the right (or the shoulder), and from the right edge of the road."""
+    """A left turn from the next lane to the right, and from the right edge of the road; none out of a told lane."""
+    if role.actor.lane is not None and role.course.right_edge_m > role.course.lane_width_m:
+        return []
     lane, edge = role.course.lane_width_m, role.course.right_edge_m - role.size[1] / 2
-    return _from_beside_it(role, turn, [-lane, -edge] if edge > 1.4 * lane else [-lane])
+    return _from_beside_it(role, turn, [-lane, -edge] if edge > 1.4 * lane else [-lane] if edge > lane else [-edge])
 
 
 def _from_the_left(role: Role, turn: Passage) -> list[Drift]:
-    """A right turn from further left in its lane, and from the next lane to the left where there is one."""
+    """A right turn from further left in its lane, and from the next lane to the left where there is one and none is
+    told."""
     lane = role.course.lane_width_m
     in_lane = max((lane - role.size[1]) / 2, 0.3)
-    return _from_beside_it(role, turn, [in_lane, lane] if role.course.opposite_m > 1.5 * lane else [in_lane])
+    beside = role.course.own_left_m > lane and role.actor.lane is None
+    return _from_beside_it(role, turn, [in_lane, lane] if beside else [in_lane])
 
 
 def _from_beside_it(role: Role, turn: Passage, asides_m: Sequence[float]) -> list[Drift]:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from sgcad_core.geometry.plane import Box, corners, overlap
 from sgcad_core.metrics import conflict
-from sgcad_core.metrics.conflict import Track
+from sgcad_core.metrics.swept_cells import Track
 
 COORDINATE = st.floats(-30, 30)
 SPEED = st.floats(-20, 20)

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.geometry.plane import Box, overlap
-from sgcad_core.metrics.conflict import Track
 from sgcad_core.metrics.precontact_metrics import precontact_figures
+from sgcad_core.metrics.swept_cells import Track
 
 SIZE = (4.7, 1.8)
 

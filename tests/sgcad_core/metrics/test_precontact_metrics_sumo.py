@@ -11,7 +11,8 @@ from lxml import etree
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.metrics import conflict
-from sgcad_core.metrics.conflict import Track, required_deceleration
+from sgcad_core.metrics.conflict import required_deceleration
+from sgcad_core.metrics.swept_cells import Track
 from sgcad_core.records.specs import Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
 

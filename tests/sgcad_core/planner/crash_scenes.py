@@ -162,11 +162,12 @@ def head_on(d: Draw):
 def side_swipe(d: Draw):
     road = d.random.choice(list(d.legs))
     lanes = d.legs[road].lanes_in
+    if lanes < 2:  # a lane change needs both lanes on its carriageway
+        return None
     way = d.pick("left", "right")
-    lane = d.random.randint(1, lanes - 1) if lanes > 1 else None
-    here = None if lane is None else lane + (way == "right")
-    a = d.actor(1, road, f"lane_change_{way}", lane=here)
-    b = d.actor(2, road, "straight", lane=None if lane is None else lane + (way == "left"))
+    lane = d.random.randint(1, lanes - 1)
+    a = d.actor(1, road, f"lane_change_{way}", lane=lane + (way == "right"))
+    b = d.actor(2, road, "straight", lane=lane + (way == "left"))
     other = "right" if way == "left" else "left"
     return d.pair(a, b, (way, other), (way, other), ("front", other))
 

@@ -11,7 +11,7 @@ from sgcad_core.metrics.rest_error import attitude_of, rest_errors
 from sgcad_core.planner import plan
 from sgcad_core.planner.aftermath.ground_friction import Drag, Released, RunOut, apply_friction, run_out_paths
 from sgcad_core.planner.aftermath.impact import body
-from sgcad_core.planner.aftermath.rest_candidates import all_runs
+from sgcad_core.planner.aftermath.rest_candidates import all_runs, loops
 from sgcad_core.records.course import CourseTold, RestTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
 from sgcad_core.roads.surface import road_surface
@@ -142,10 +142,25 @@ def test_who_rolls_on_comes_further_before_it_brakes() -> None:
 
 
 def test_who_rolls_over_drives_nowhere_and_hardly_steers() -> None:
-    ways = all_runs(0.0, 7.0, on_wheels=False)
+    ways = all_runs(0.0, 7.0, 15.0, on_wheels=False)
     assert {way.rolls_s for way in ways} == {0.0}
-    assert max(abs(way.bend_per_m) for way in ways) < max(abs(way.bend_per_m) for way in all_runs(0.0, 7.0)) / 4
-    assert any(way.rolls_s for way in all_runs(0.0, 7.0))
+    assert max(abs(way.bend_per_m) for way in ways) < max(abs(way.bend_per_m) for way in all_runs(0.0, 7.0, 15.0)) / 4
+    assert any(way.rolls_s for way in all_runs(0.0, 7.0, 15.0))
+
+
+def test_a_slow_wreck_brakes_instead_of_crawling_on() -> None:
+    assert min(way.along_mps2 for way in all_runs(0.0, 7.0, 2.0)) > 2.0
+    assert not any(way.rolls_s for way in all_runs(0.0, 7.0, 2.0))
+
+
+def test_a_run_out_that_goes_round_in_a_loop_costs() -> None:
+    angle = np.linspace(0.0, math.pi, 40)
+    straight = np.column_stack((10 * angle, 0 * angle, 0 * angle))
+    bent = np.column_stack((10 * np.sin(angle / 4), 10 - 10 * np.cos(angle / 4), angle / 4))
+    round_about = np.column_stack((10 * np.sin(angle), 10 - 10 * np.cos(angle), angle))
+    costs = loops(np.stack((straight, bent, round_about), axis=1), 0.1)
+    assert costs[0] == costs[1] == 0.0
+    assert costs[2] > 0.5
 
 
 @pytest.mark.parametrize("bend", [0.1, -0.1])

@@ -1,0 +1,121 @@
+"""Places where a standing vehicle is struck by one that comes by after the first contact.
+
+As for things that are struck on the way to rest: before a side of the box that comes, with the told side towards it,
+along its road if that is not far off. Knows scenes and roles.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from sgcad_core.geometry.plane import SIDES, Floats, gaps_where_near
+from sgcad_core.planner.actor_plan import Role, facing
+from sgcad_core.planner.encounter.meeting_place import place_near
+from sgcad_core.planner.motion import STEP_S
+from sgcad_core.planner.scene import Scene
+from sgcad_core.records.specs import Area
+from sgcad_core.roads.surface import RoadSurface
+
+_LEAST_MPS = 2.6
+"""A slower impact is hardly one, and files whose vertices lie 0.11 m apart cannot show it."""
+_PUSHES_MPS = 0.5
+"""One that is pushed touches the next one at this speed still."""
+_SOON_S, _AT_ONCE_S = 0.3, 0.1
+"""Time between two contacts at least, where the partner drives and where it is pushed."""
+_SOON, _LATE = (0.1, 0.25, 0.45, 0.65), (0.3, 0.5, 0.7, 0.15, 0.9)
+"""Places to try, as shares of those where the partner still moves: soon where it goes on to a further contact."""
+_DEPTH_M = 0.05
+_ALONG_RAD = math.radians(50.0)
+"""The told side is met at this angle as well, so that the vehicle stands along its road."""
+_ASIDE = (0.0, 0.3, -0.3)
+"""Shares of the partner's side by which the vehicle stands beside its middle."""
+_OFF_ROAD_M = 0.3
+
+
+@dataclass(frozen=True)
+class ToBeStruck:
+    """The search for a place of a vehicle that stands until a partner in the scene strikes it.
+
+    `sides`: of the partner and of the vehicle. `more`: whether further contacts follow.
+    """
+
+    scene: Scene
+    role: Role
+    partner: str
+    sides: tuple[Area, Area]
+    surface: RoadSurface
+    more: bool
+
+    def poses(self, after: int) -> Iterator[Floats]:
+        """(3,) poses, the best first, where no other actor ever is and the partner comes behind a sample only."""
+        ranked = [found for k in self._samples(after) for found in self._before(k)]
+        on_road = self.surface.off(np.array([pose[:2] for _, _, pose in ranked]))[0] if ranked else np.zeros(0)
+        waits = self.role.actor.maneuver == "stopped"
+        order = sorted(
+            (rank + (waits and off > _OFF_ROAD_M), n)
+            for n, ((rank, _, _), off) in enumerate(zip(ranked, on_road, strict=True))
+        )
+        for _, n in order:
+            _, k, pose = ranked[n]
+            if self._is_free(pose, k):
+                yield pose
+
+    def _samples(self, after: int) -> list[int]:
+        poses = self.scene.tracks[self.partner].poses
+        speed = np.hypot(*np.diff(poses[:, :2], axis=0).T) / STEP_S
+        found: list[int] = []
+        for least, wait_s in ((_LEAST_MPS, _SOON_S), (_PUSHES_MPS, _AT_ONCE_S)):
+            moving = np.flatnonzero(speed > least)
+            moving = moving[moving >= after + round(wait_s / STEP_S)] + 1
+            shares = _SOON if self.more else _LATE
+            found += [int(moving[round(share * (len(moving) - 1))]) for share in shares] if len(moving) else []
+        return found
+
+    def _before(self, k: int) -> Iterator[tuple[float, int, Floats]]:
+        """(rank, sample, pose) before the told side of the partner, else before the one that leads."""
+        track = self.scene.tracks[self.partner]
+        x, y, heading = (float(v) for v in track.poses[k])
+        by = track.poses[k] - track.poses[k - 1]
+        for number, side in enumerate(SIDES):
+            out = heading + facing(side)
+            outward = float(by[0] * math.cos(out) + by[1] * math.sin(out)) / STEP_S
+            leads = outward > 0.7 * math.hypot(by[0], by[1]) / STEP_S
+            if outward < _PUSHES_MPS / 2 or not (leads or side == self.sides[0]):
+                continue
+            half, wide = (track.size[number % 2] / 2, track.size[1 - number % 2])
+            for turned, angle in self._headings(track.poses[k], out):
+                reach = half + self._extent(angle - out) - min(_DEPTH_M, outward * STEP_S)
+                for aside in _ASIDE:
+                    left = aside * wide
+                    rank = 2.0 * (side != self.sides[0]) + turned + 0.2 * bool(aside)
+                    yield rank, k, np.array([
+                        x + reach * math.cos(out) - left * math.sin(out),
+                        y + reach * math.sin(out) + left * math.cos(out), angle,
+                    ])  # fmt: skip
+
+    def _headings(self, partner: Floats, out: float) -> Iterator[tuple[float, float]]:
+        """(rank, heading): along its road where the told side then faces the partner about, else straight to it."""
+        exact = out + math.pi - facing(self.sides[1])
+        course = self.role.course
+        along = float(course.path.poses([place_near(course, partner).station_m])[0, 2])
+        for rank, angle in ((0.0, along), (0.3, along + math.pi)):
+            if abs(math.remainder(angle - exact, 2 * math.pi)) < _ALONG_RAD:
+                yield rank, angle
+        yield 0.6, exact
+
+    def _extent(self, turned: float) -> float:
+        """How far the vehicle reaches from its center, at an angle to its heading."""
+        length, width = self.role.size
+        return length / 2 * abs(math.cos(turned)) + width / 2 * abs(math.sin(turned))
+
+    def _is_free(self, pose: Floats, k: int) -> bool:
+        for name, track in self.scene.tracks.items():
+            last = k - 1 if name == self.partner else len(track.poses)
+            there = np.repeat(pose[None], last, axis=0)
+            if last and float(gaps_where_near(there, self.role.size, track.poses[:last], track.size).min()) <= 0.0:
+                return False
+        return True
