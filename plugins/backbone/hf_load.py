@@ -20,8 +20,8 @@ from safetensors import SafetensorError, safe_open
 
 from plugins.backbone import hf_adapter
 from sgcad_core import settings
+from sgcad_core.entry_points import catalogue
 from sgcad_core.errors import ConfigError, MissingTool
-from sgcad_core.registry import catalogue
 from sgcad_core.system.digest import file_sha256
 
 HEADS_FILE = "told.safetensors"

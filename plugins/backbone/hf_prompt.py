@@ -23,6 +23,7 @@ from plugins.backbone.hf_load import Loaded
 from plugins.backbone.prompt import Parts
 from sgcad_core.case.records import Diagram
 from sgcad_core.errors import ConfigError
+from sgcad_core.system.pictures import opened
 
 _KEPT_PICTURES = 64
 _GAP = "\n\n"
@@ -155,8 +156,8 @@ class Prompter:
 
     def _prepared(self, diagram: Diagram, digest: str, view: int) -> Picture:
         assert self.loaded.prepare is not None  # noqa: S101 -- asked by the caller
-        with Image.open(io.BytesIO(diagram.png)) as opened:
-            found = dict(self.loaded.prepare(opened.convert("RGB"), view))
+        with opened(diagram.png) as picture:
+            found = dict(self.loaded.prepare(picture.convert("RGB"), view))
         if "rows" in found:
             self.layouts[digest] = (int(found["rows"][0][0]), int(found["cols"][0][0]))
         layout = ("rows", "cols", "num_tiles")

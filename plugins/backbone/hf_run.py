@@ -21,6 +21,8 @@ from plugins.backbone.prompt import Parts
 from sgcad_core.asking.json_field_spans import first_tokens, grounding, is_refusal, name_of
 from sgcad_core.case.records import Finding, Generation, Token
 from sgcad_core.errors import BadInput, ConfigError, InvalidOutput
+from sgcad_core.plugin_calls import fault_of
+from sgcad_core.settings import cache_home
 
 if TYPE_CHECKING:
     from plugins.backbone.engine.grammar import Grammar, GrammarCompiler
@@ -84,7 +86,7 @@ class RunningModel:
         except faults.BadLogits as fault:
             raise InvalidOutput(f"{self.name}: {fault}; try dtype bfloat16 or float32") from fault
         except faults.BadScores as fault:
-            raise InvalidOutput(f"{self.name}: {fault}; mend the decoder") from fault
+            raise fault_of(call.policy, str(fault)) from fault
         except faults.TooLong as fault:
             raise BadInput(f"{self.name}: {fault}; set backbone.truncate, or lower backbone.max_new_tokens") from fault
         except faults.TooBig as fault:
@@ -213,7 +215,7 @@ def start_model(
     adapter: str | None = None,
 ) -> RunningModel:
     """Loads a model, checks its batching and starts its loop. Raises ConfigError or MissingTool."""
-    from plugins.backbone.engine.check import batching
+    from plugins.backbone.engine.check import kept_batching
     from plugins.backbone.engine.families import family_of
     from plugins.backbone.engine.faults import EngineFault
     from plugins.backbone.engine.grammar import GrammarCompiler
@@ -225,7 +227,8 @@ def start_model(
     try:
         family = family_of(loaded.model)
         prompter = Prompter(loaded, family, pictures_first)
-        apart = batching(loaded.model, family, prompter.picture(check_diagram()) if loaded.prepare else None)
+        picture = prompter.picture(check_diagram()) if loaded.prepare else None
+        apart = kept_batching(loaded.model, family, picture, cache_home())
     except EngineFault as fault:
         raise ConfigError(f"backbone.model {name}: {fault}") from fault
     eos = _end_tokens(loaded.model, loaded.tokenizer)

@@ -20,7 +20,7 @@ from plugins.backbone.prompt import parts
 from sgcad_core import settings
 from sgcad_core.asking.json_field_spans import is_refusal
 from sgcad_core.case.records import Context, Generation, Query
-from sgcad_core.errors import ConfigError, InvalidOutput, MissingTool, Refused
+from sgcad_core.errors import ConfigError, InvalidOutput, Refused, ServerSilent
 from sgcad_core.interfaces import Backbone, Decoder
 
 _RETRIED = frozenset({408, 409, 425, 429})
@@ -48,7 +48,7 @@ class OpenAIChat(Backbone):
     api_key_env: str = Field("OPENAI_API_KEY", description="environment variable that holds the key; unset = no key")
     max_new_tokens: int = Field(4096, ge=1)
     timeout_s: float = Field(300.0, gt=0)
-    retries: int = Field(4, ge=0, le=10)
+    retries: int = Field(2, ge=0, le=10, description="tries of one question beside the first; a step is repeated too")
     backoff_s: float = Field(1.0, gt=0, description="first wait between tries; doubles")
     schema_mode: Literal["json_schema", "json_object", "none"] = Field(
         "json_schema", description="what the server understands of response_format"
@@ -58,7 +58,7 @@ class OpenAIChat(Backbone):
         """Asks the server.
 
         Raises InvalidOutput for an answer that is empty or cut off, Refused where the model declines,
-        ConfigError for a request that the server rejects, MissingTool where no server answers.
+        ConfigError for a request that the server rejects, ServerSilent where no server answers.
         """
         if decoder.needs_prior:
             raise ConfigError(
@@ -122,7 +122,7 @@ class OpenAIChat(Backbone):
             if response.status_code < 500 and response.status_code not in _RETRIED:
                 self._reject(response)
             self._wait_as_told(response)
-        raise MissingTool(
+        raise ServerSilent(
             f"{self._url} gave no answer in {self.retries + 1} tries, at last {last}; start the server, mend "
             "backbone.base_url, or raise backbone.retries"
         )

@@ -24,6 +24,7 @@ from sgcad_core.asking.json_field_spans import is_refusal
 from sgcad_core.case.records import Context, Generation, Query, Stage
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.interfaces import Backbone, Decoder
+from sgcad_core.system.yaml_faults import YAML_FAULTS
 
 
 class Answer(BaseModel):
@@ -112,7 +113,7 @@ def _read(file: Path) -> list[Any]:
         if file.suffix == ".jsonl":
             return [json.loads(line) for line in text.splitlines() if line.strip()]
         found = yaml.safe_load(text)
-    except (OSError, UnicodeDecodeError, ValueError, yaml.YAMLError) as fault:
+    except (OSError, *YAML_FAULTS) as fault:
         raise ConfigError(f"backbone.file {file}: cannot be read: {fault}") from fault
     if not isinstance(found, list):
         raise ConfigError(f"backbone.file {file}: expected a list of answers, found {type(found).__name__}")

@@ -20,6 +20,7 @@ from pydantic import Field
 
 from plugins.decoder.base import FixedContrast
 from sgcad_core.case.records import Context, Diagram
+from sgcad_core.system.pictures import opened
 
 
 class Vcd(FixedContrast):
@@ -47,7 +48,7 @@ def kept_signal(step: int) -> float:
 
 def _noised(diagram: Diagram, step: int) -> Diagram:
     seed = int.from_bytes(hashlib.sha256(diagram.png).digest()[:8], "big")
-    with Image.open(io.BytesIO(diagram.png)) as picture:
+    with opened(diagram.png) as picture:
         pixels = np.asarray(picture.convert("RGB"), dtype=np.float64) / 127.5 - 1.0
     kept = kept_signal(step)
     noise = np.random.default_rng(seed).standard_normal(pixels.shape)

@@ -18,13 +18,15 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationError, model_validator
 
+from plugins.driver._external_answers import command
 from sgcad_core.case.driver_io import STEP_S, Command, RoadUser, Seat, Task, View
 from sgcad_core.errors import ConfigError, SimulationFailed
 from sgcad_core.interfaces import Driver
 
-_LONGEST_LINE = 1 << 20
+LONGEST_LINE = 500_000
+"""Bytes of an answer: 2,000 rows of five numbers have 200,000. A longer one is not parsed."""
 Answer = Callable[[dict[str, Any]], Any]
 
 
@@ -61,16 +63,32 @@ class _Seat(Seat):
         """The command that the driver answers. Raises SimulationFailed for an invalid answer."""
         said = self._answer({"view": _view(view)})
         try:
-            return _command(said)
-        except (TypeError, ValueError, KeyError, IndexError) as fault:
+            return command(said, view.ego)
+        except (ValueError, RecursionError) as fault:
             raise SimulationFailed(
-                f"the external driver answered {str(said)[:200]!r} ({fault}); "
+                f"the external driver answered {_short(said)} ({_first(fault)}); "
                 "expected acceleration_mps2 and steering_rad, or trajectory"
             ) from fault
 
     def leave(self) -> None:
         """Tells the driver that the drive is over."""
         self._close()
+
+
+def _short(said: Any) -> str:
+    """The beginning of an answer; a number may have more digits than Python writes out."""
+    try:
+        return repr(str(said)[:200])
+    except (ValueError, RecursionError):
+        return f"a {type(said).__name__}"
+
+
+def _first(fault: Exception) -> str:
+    """The first fault of an answer in words."""
+    if not isinstance(fault, ValidationError):
+        return str(fault)
+    about = fault.errors(include_url=False, include_input=False)[0]
+    return f"{'.'.join(map(str, about['loc']))}: {about['msg']}"
 
 
 # ------------------------------------------------------------------ the two doors
@@ -109,15 +127,23 @@ def _connected(config: External) -> tuple[Answer, Callable[[], None]]:
             ) from fault
         except OSError as fault:
             raise SimulationFailed(f"the external driver at {where} has hung up ({fault})") from fault
+        except _TooLong as fault:
+            raise SimulationFailed(
+                f"the external driver at {where} answered {fault}: expected one JSON object a line, "
+                f"at most {LONGEST_LINE} bytes"
+            ) from fault
         try:
             return json.loads(said)
         except (ValueError, RecursionError) as fault:  # a line of brackets is deeper than json goes
             raise SimulationFailed(
-                f"the external driver at {where} answered {said[:80]!r}: expected one JSON object a line, "
-                f"below {_LONGEST_LINE} bytes ({fault})"
+                f"the external driver at {where} answered {said[:80]!r}: expected one JSON object a line ({fault})"
             ) from fault
 
     return answer, line.close
+
+
+class _TooLong(Exception):
+    """A line that is not parsed; the message is its beginning."""
 
 
 class _Line:
@@ -127,17 +153,19 @@ class _Line:
         self._door, self._timeout_s, self._read = door, timeout_s, bytearray()
 
     def asked(self, question: bytes) -> bytes:
-        """The line that comes back. Raises TimeoutError (not within the limit), OSError (connection closed)."""
+        """The line that comes back. Raises TimeoutError (not within the limit), OSError (hung up), _TooLong."""
         until = time.monotonic() + self._timeout_s
         self._door.settimeout(self._timeout_s)
         self._door.sendall(question + b"\n")
-        while (end := self._read.find(b"\n")) < 0 and len(self._read) < _LONGEST_LINE:
+        while (end := self._read.find(b"\n")) < 0 and len(self._read) <= LONGEST_LINE:
             self._door.settimeout(_left(until))
             piece = self._door.recv(1 << 16)
             if not piece:
                 raise ConnectionResetError("no line came back")
             self._read += piece
-        said = bytes(self._read[: end if end >= 0 else None])
+        if not 0 <= end <= LONGEST_LINE:
+            raise _TooLong(repr(bytes(self._read[:80])))
+        said = bytes(self._read[:end])
         del self._read[: len(said) + 1]
         return said
 
@@ -180,17 +208,3 @@ def _view(view: View) -> dict[str, Any]:
         "script_s": round(view.script_s, 4),
         "others": [_user(u) for u in view.others],
     }
-
-
-def _command(said: Any) -> Command:
-    if "trajectory" in said:
-        rows = np.array(said["trajectory"], dtype=float)
-        if rows.ndim != 2 or rows.shape[1] != 5 or not np.isfinite(rows).all() or (np.diff(rows[:, 0]) <= 0).any():
-            raise ValueError("trajectory: rows of t_s, x_m, y_m, heading_rad, speed_mps with rising t_s")
-        x, y, heading, speed = (float(np.interp(STEP_S, rows[:, 0], rows[:, i])) for i in range(1, 5))
-        return Command(pose=(x, y, heading, speed))
-    steering = said.get("steering_rad")
-    numbers = float(said["acceleration_mps2"]), None if steering is None else float(steering)
-    if not all(n is None or np.isfinite(n) for n in numbers):
-        raise ValueError("not a finite number")
-    return Command(*numbers)

@@ -1,7 +1,8 @@
 """A trajectory from a file: the ego follows it whatever happens.
 
 The file is a CSV with t_s, x_m, y_m, heading_rad and, if wanted, speed_mps; of one with a column actor the ego's rows
-count (a `trajectories.csv`). Times are from the hand-over on; behind the last one the ego goes on straight.
+count (a `trajectories.csv`). Times are from the hand-over on; behind the last one the ego goes on straight. It begins
+where the ego is, and is one that the ego can drive.
 """
 
 from __future__ import annotations

@@ -16,11 +16,12 @@ import io
 import re
 from typing import Literal, get_args
 
-from PIL import Image, ImageFilter
+from PIL import ImageFilter
 
 from sgcad_core.case.records import CrashReport, Diagram
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.text.traced_text import TracedText, joined, placed, runs
+from sgcad_core.system.pictures import opened
 
 Level = Literal[
     "full", "semantic_noise", "blur_weak", "blur_medium", "blur_strong", "modal_conflict", "critical_depletion",
@@ -90,7 +91,7 @@ _TEXT = {
 
 def _blurred(picture: Diagram, sigma_px: float) -> Diagram:
     """The diagram blurred; sigma grows with its width, so that every diagram loses the same detail."""
-    image = Image.open(io.BytesIO(picture.png))
+    image = opened(picture.png)
     radius = sigma_px * picture.width_px / REFERENCE_WIDTH_PX
     out = io.BytesIO()
     image.filter(ImageFilter.GaussianBlur(radius)).save(out, "PNG")

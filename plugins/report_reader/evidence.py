@@ -22,12 +22,13 @@ from sgcad_core.errors import BadInput
 from sgcad_core.interfaces import ReportReader
 from sgcad_core.reading.text.privacy import redacted
 from sgcad_core.reading.text.traced_text import TracedText, joined, runs
+from sgcad_core.system.pictures import opened
 
 MAX_NARRATIVE = 100_000
 """Characters: the longest real report here has 6,000."""
 MAX_PIXELS = 40_000_000
 MAX_SIDE_PX = 2048
-MIN_WORDS = 5
+MIN_WORDS = 3
 PICTURE_KINDS = "PNG, JPEG, GIF, BMP, TIFF or WebP"
 UNREADABLE = (
     OSError, SyntaxError, EOFError, ValueError, LookupError, TypeError, AttributeError, AssertionError, ArithmeticError,
@@ -131,7 +132,7 @@ def diagram(raw: bytes, source: Path) -> Diagram:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the limit below is stricter than Pillow's
-            picture = Image.open(io.BytesIO(raw))
+            picture = opened(raw)
             if picture.width * picture.height > MAX_PIXELS:
                 raise BadInput(
                     f"{source}: {picture.width} x {picture.height} pixels, the limit is {MAX_PIXELS:,}: scale it down"

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import io
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
+from typing import cast
 
+import pypdf
 from pypdf import PdfReader
-from pypdf.errors import PyPdfError
+from pypdf.errors import DependencyError, DeprecationError, PyPdfError
 
 from plugins.report_reader.evidence import MAX_NARRATIVE, UNREADABLE, EvidenceReader, diagram
 from sgcad_core.case.records import CrashReport, Diagram
@@ -18,7 +21,11 @@ MAX_DRAWN_BYTES = 8_000_000
 """Limit of the uncompressed drawing of all pages: a page of text has 20 kB, a scene diagram some 200 kB."""
 MAX_DRAWN = 100_000
 """Limit of the drawing operators of all pages; a repeated drawing counts each time. So many take 1.5 s."""
+MAX_DAMAGED_BYTES = 200_000
+"""Of a damaged compressed stream, which is read byte by byte: 1 MB takes a second."""
 MIN_PICTURE_PX = 200
+FAULTS = (PyPdfError, DependencyError, DeprecationError, *UNREADABLE)
+"""What pypdf raises for a PDF that is broken, or needs a package or a program that is not there."""
 
 
 class Pdf(EvidenceReader):
@@ -26,10 +33,14 @@ class Pdf(EvidenceReader):
 
     def read(self, source: Path) -> CrashReport:
         """Reads one PDF. Raises BadInput for scans, encrypted and broken files."""
+        with _bounded():
+            return self._read(source)
+
+    def _read(self, source: Path) -> CrashReport:
         pages = self._pages(source)
         try:
             text = _text(pages, source)
-        except (PyPdfError, *UNREADABLE) as fault:
+        except FAULTS as fault:
             raise BadInput(f"{source}: the text layer cannot be read ({fault}): save the PDF anew") from fault
         if not text.strip():
             raise BadInput(f"{source}: the PDF has no text layer: run text recognition (OCR) on it first")
@@ -46,8 +57,15 @@ class Pdf(EvidenceReader):
                     f"{source}: {len(reader.pages)} pages, the limit is {MAX_PAGES}: extract the crash report"
                 )
             return list(reader.pages)
-        except (PyPdfError, *UNREADABLE) as fault:
+        except FAULTS as fault:
             raise BadInput(f"{source}: no readable PDF ({fault})") from fault
+
+
+def _bounded() -> AbstractContextManager[object]:
+    """pypdf without the program jbig2dec, which it would give JBIG2 pictures to, and with less patience for damage."""
+    apply = getattr(pypdf, "apply_configuration", None)  # versions before 7 have no such limits
+    limits = {"jbig2dec_binary": None, "zlib_maximum_recovery_input_length": MAX_DAMAGED_BYTES}
+    return cast("AbstractContextManager[object]", apply(**limits)) if apply else nullcontext()
 
 
 def _text(pages: list, source: Path) -> str:  # type: ignore[type-arg]
@@ -79,7 +97,7 @@ def _largest_picture(pages: list) -> Diagram | None:  # type: ignore[type-arg]
     for page in pages:
         try:
             found = [diagram(image.data, Path(image.name)) for image in page.images]
-        except (BadInput, PyPdfError, *UNREADABLE):
+        except (BadInput, *FAULTS):
             continue  # a picture in a codec that we do not read is no reason to lose the text
         for picture in found:
             if min(picture.width_px, picture.height_px) >= MIN_PICTURE_PX and (

@@ -53,6 +53,11 @@ class OmnitesterRoad(RoadWriter):
         """The index's fingerprint, "" without a folder. Raises ConfigError if the folder holds no index."""
         return self._retriever.stamp if self._retriever else ""
 
+    @property
+    def prompts(self) -> tuple[str, ...]:
+        """The prompts of both questions, and the words on the form of the answer."""
+        return ("omnitester_interpreter", "omnitester_net", f"plain_xml_{self.form}")
+
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:

@@ -42,6 +42,11 @@ class PlainXmlRoad(RoadWriter):
     prompt: str = Field("plain_xml", pattern=r"^[\w-]+$")
     """configs/prompts/<prompt>.md; its slot {answer} says how to answer."""
 
+    @property
+    def prompts(self) -> tuple[str, ...]:
+        """The prompt and the words on the form of the answer."""
+        return (self.prompt, f"{self.prompt}_{self.form}")
+
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:

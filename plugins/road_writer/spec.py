@@ -60,9 +60,13 @@ class SpecRoad(RoadWriter):
         spec = road_spec(layout)
         return compile_network(plain_xml(spec), spec).model_copy(update={"layout": layout})
 
+    @property
+    def prompts(self) -> tuple[str, ...]:
+        """The prompt, and the words on roundabouts and their like."""
+        return (self.prompt or self.form, *([f"{self.form}_places"] if self.places else []))
+
     def _task(self) -> str:
-        task = load_prompt(self.prompt or self.form)
-        return f"{task}\n\n{load_prompt(f'{self.form}_places')}" if self.places else task
+        return "\n\n".join(load_prompt(name) for name in self.prompts)
 
 
 def _layout(answer: str) -> RoadLayout:

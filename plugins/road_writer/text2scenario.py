@@ -55,6 +55,11 @@ class Text2ScenarioRoad(RoadWriter):
     form: Literal["scene", "layout"] = "scene"
     prompt: str = Field("text2scenario_scene", pattern=r"^[\w-]+$")
 
+    @property
+    def prompts(self) -> tuple[str, ...]:
+        """The prompt."""
+        return (self.prompt,)
+
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:

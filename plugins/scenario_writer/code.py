@@ -64,6 +64,11 @@ class Code(ScenarioWriter):
     wall_s: float = Field(15.0, gt=0, le=120)
     memory_mb: int = Field(512, ge=128, le=4096)
 
+    @property
+    def prompts(self) -> tuple[str, ...]:
+        """The prompt and the words on the form of the answer."""
+        return (self.prompt, f"{self.prompt}_{self.form}")
+
     def write(
         self,
         context: Context,

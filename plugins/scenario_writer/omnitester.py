@@ -49,6 +49,11 @@ class OmnitesterVehicles(ScenarioWriter):
     form: Literal["envelope", "fenced"] = "fenced"
     _seen: CaseCache[VehicleInterpretation] = PrivateAttr(default_factory=CaseCache)
 
+    @property
+    def prompts(self) -> tuple[str, ...]:
+        """The prompts of both questions, and the words on the form of the answer."""
+        return ("omnitester_roles", "omnitester_vehicles", f"omnitester_{self.form}")
+
     def write(
         self,
         context: Context,

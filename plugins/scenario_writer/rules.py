@@ -1,6 +1,7 @@
 """Scenarios by rules: the narrative's facts placed on the network and planned, without a model.
 
-The baseline without a model. Reads the narrative only: no diagram, no passages; findings cannot change its answer.
+The baseline without a model. Reads the narrative only: no diagram, no passages. Where the contact does not come about,
+it changes what keeps it from that (`execution.mending`).
 """
 
 from __future__ import annotations
@@ -9,23 +10,29 @@ from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from plugins.scenario_writer._planned import PlannedWriter, roads_of
-from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork, Scenario
+from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork, Scenario, Severity
+from sgcad_core.execution.contact import first_contact
+from sgcad_core.execution.mending import mended
 from sgcad_core.execution.plan_score import least_doubted
+from sgcad_core.execution.playback import sizes_of
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
 from sgcad_core.reading.crash_facts import CrashFacts
+from sgcad_core.reading.layout.layout_facts import lane_notes
 from sgcad_core.reading.reading import Reading
 from sgcad_core.reading.reading_with_edits import holds
-from sgcad_core.records.specs import RoadSpec
+from sgcad_core.records.course import Courses
+from sgcad_core.records.specs import BehaviorSpec, RoadSpec
 
 
 class Rules(PlannedWriter):
     """Plans vehicles, headings, maneuvers and contacts as the narrative states them, completed by inference."""
 
     asks_model: ClassVar[bool] = False
-    version: ClassVar[str] = "3"
+    mends: ClassVar[tuple[Severity, ...]] = ("repair",)
+    version: ClassVar[str] = "4"
 
     try_others: bool = True
     """If the checks doubt the first plan: plan readings that differ in one weak fact, and keep the least doubted."""
@@ -42,7 +49,8 @@ class Rules(PlannedWriter):
         """Plans and writes the scenario. Raises Refused (no vehicles), InvalidOutput (no network)."""
         spec = roads_of(network)
         reading = context.reading
-        scenario = self._compiled(reading.crash, spec, network, reading)
+        facts = reading.crash
+        scenario = self._compiled(facts, spec, network, reading)
         said: list[str] = []
         if self.try_others and network.net_xml and not reading.lost_control:
             least = least_doubted(
@@ -51,20 +59,36 @@ class Rules(PlannedWriter):
             )  # fmt: skip
             said = least.notes()
             if least.words:
-                scenario = self._compiled(least.facts, spec, network, reading)
-        return scenario.model_copy(update={"notes": (*_inferred(reading.crash), *said, *scenario.notes)})
+                facts = least.facts
+                scenario = self._compiled(facts, spec, network, reading)
+        if findings:
+            scenario = self._mended(scenario, facts, network, reading)
+        widened = lane_notes(reading.roads) if network.source == "written" else ()
+        return scenario.model_copy(update={"notes": (*_inferred(reading.crash), *widened, *said, *scenario.notes)})
 
     def _compiled(self, facts: CrashFacts, spec: RoadSpec, network: RoadNetwork, reading: Reading) -> Scenario:
         """The scenario of one reading of the crash."""
+        return self._of_behavior(behavior_of_facts(facts, spec), facts.driven, network, reading)
+
+    def _of_behavior(
+        self, behavior: BehaviorSpec, courses: Courses, network: RoadNetwork, reading: Reading
+    ) -> Scenario:
         return compile_scenario(
-            behavior_of_facts(facts, spec),
-            network,
-            self.openscenario,
-            self.encoding,
-            may_skid=reading.lost_control,
-            courses=facts.courses,
-            signals=reading.signals,
-        )
+            behavior, network, self.openscenario, self.encoding,
+            may_skid=reading.lost_control, courses=courses, signals=reading.signals,
+        )  # fmt: skip
+
+    def _mended(self, scenario: Scenario, facts: CrashFacts, network: RoadNetwork, reading: Reading) -> Scenario:
+        """The scenario with the change that brings its contact about; itself where none does."""
+        if scenario.behavior is None or network.net_xml is None:
+            return scenario
+        seen = first_contact(scenario.planned, sizes_of(scenario))
+        graph = parse_net(network.net_xml)
+        found = mended(scenario.behavior, graph, seen, may_skid=reading.lost_control, courses=facts.driven)
+        if found is None:
+            return scenario
+        other = self._of_behavior(found.behavior, facts.driven, network, reading)
+        return other.model_copy(update={"notes": (f"mended: {found.words}", *other.notes)})
 
 
 def _inferred(facts: CrashFacts) -> Iterator[str]:

@@ -34,6 +34,11 @@ class SpecScenario(PlannedWriter):
     near_crashes: bool = False
     """Ask for near crashes as well, which the embedded model has not learned; else they are as the rules read them."""
 
+    @property
+    def prompts(self) -> tuple[str, ...]:
+        """The prompt."""
+        return (self.prompt,)
+
     def write(
         self,
         context: Context,
@@ -57,7 +62,7 @@ class SpecScenario(PlannedWriter):
         behavior = behavior if self.near_crashes else as_read(behavior, reading.crash)
         return compile_scenario(
             behavior, network, self.openscenario, self.encoding,
-            may_skid=reading.lost_control, courses=reading.crash.courses, signals=reading.signals,
+            may_skid=reading.lost_control, courses=reading.crash.driven, signals=reading.signals,
         )  # fmt: skip
 
     def _shown(self, network: RoadNetwork, roads: RoadSpec | LaneGraph) -> str:

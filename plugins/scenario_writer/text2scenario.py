@@ -91,6 +91,11 @@ class Text2Scenario(PlannedWriter):
     prompt: str = Field("text2scenario_events", pattern=r"^[\w-]+$")
     """configs/prompts/<prompt>.md; its slot {roads} is filled."""
 
+    @property
+    def prompts(self) -> tuple[str, ...]:
+        """The prompt."""
+        return (self.prompt,)
+
     def write(
         self,
         context: Context,

@@ -7,7 +7,6 @@ are (n, 4) arrays of box center x, y, heading and speed; metres, radians, m/s. E
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import libsumo
 import numpy as np
@@ -26,11 +25,9 @@ Mover = tuple[str, float, float, Floats]
 Row = tuple[float, float, float, float]
 
 
-class Poses(NamedTuple):
-    """Poses read back from SUMO, one array for each actor, and notes on what SUMO did otherwise."""
-
-    poses: tuple[Floats, ...]
-    notes: tuple[str, ...]
+Poses = tuple[tuple[Floats, ...], tuple[str, ...]]
+"""Poses read back from SUMO, one array for each actor, and notes on what SUMO did otherwise. A plain tuple: a class of
+this module would make the caller import libsumo when it reads the answer."""
 
 
 def replay(net_xml: str, movers: Sequence[Mover], dt_s: float) -> Poses:
@@ -71,7 +68,7 @@ def _replay(movers: Sequence[Mover]) -> Poses:
         f"{n}: SUMO lost it at row {k} (off the network); its scenario poses stand from there on"
         for n, k in lost.items()
     )
-    return Poses(tuple(seen), tuple(notes))
+    return tuple(seen), tuple(notes)
 
 
 def _add(mover: Mover) -> None:
@@ -129,7 +126,7 @@ def _drive(ids: Sequence[str], most: int) -> Poses:
         what = f"{', '.join(missing)} never appear" if missing else "the actors are never under way together"
         raise SimulationFailed(f"SUMO ran the routes, but {what}: let all depart at 0, with the actors' ids")
     notes = list(dict.fromkeys([*([f"begins when all have departed, step {late}"] if late else []), *notes]))
-    return Poses(tuple(np.array(column) for column in zip(*rows, strict=True)), tuple(notes))
+    return tuple(np.array(column) for column in zip(*rows, strict=True)), tuple(notes)
 
 
 def _row(name: str) -> Row:

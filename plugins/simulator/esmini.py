@@ -16,7 +16,7 @@ from pydantic import Field
 from plugins.simulator._esmini_log import complaints, trajectories
 from sgcad_core import settings
 from sgcad_core.case.records import Execution, RoadNetwork, Scenario
-from sgcad_core.errors import MissingTool, SimulationFailed
+from sgcad_core.errors import MissingTool, ProcessDied, SimulationFailed
 from sgcad_core.execution.playback import execution_of
 from sgcad_core.formats.openscenario.playing.player import DT_S
 from sgcad_core.interfaces import Simulator
@@ -76,7 +76,7 @@ class Esmini(Simulator):
             raise SimulationFailed(f"{command[0]} cannot be started: {fault.strerror}") from fault
         said = (done.stdout + done.stderr).decode("utf-8", "replace")
         if done.returncode < 0:
-            raise SimulationFailed(f"esmini died of {_signal(-done.returncode)}; its last words: {_last(said)}")
+            raise ProcessDied(f"esmini died of {_signal(-done.returncode)}; its last words: {_last(said)}")
         if done.returncode:
             raise SimulationFailed(f"esmini ended with {done.returncode}; its last words: {_last(said)}")
         return said

@@ -56,10 +56,10 @@ class LibSumo(Simulator):
             (actor.id, actor.length_m, actor.width_m, np.column_stack((t.pose, t.speed_mps)))
             for actor, t in zip(scenario.actors, wanted, strict=True)
         ]
-        back = self._call("replay", net_xml, movers, DT_S)
-        seen = [_seen(t, rows) for t, rows in zip(wanted, back.poses, strict=True)]
+        poses, notes = self._call("replay", net_xml, movers, DT_S)
+        seen = [_seen(t, rows) for t, rows in zip(wanted, poses, strict=True)]
         worst = max(_deviation(a, b) for a, b in zip(wanted, seen, strict=True))
-        return execution_of("libsumo", scenario, seen, "\n".join([*back.notes, f"largest deviation {worst:.1e} m"]))
+        return execution_of("libsumo", scenario, seen, "\n".join([*notes, f"largest deviation {worst:.1e} m"]))
 
     def _drive(self, scenario: Scenario, routes_xml: str, net_xml: str) -> Execution:
         try:
@@ -67,17 +67,18 @@ class LibSumo(Simulator):
         except InvalidOutput as fault:
             raise SimulationFailed(str(fault)) from fault
         ids = [actor.id for actor in scenario.actors]
-        back = self._call("drive", net_xml, routes_xml, ids, self.longest_s, DT_S)
-        seen = [_driven(name, rows) for name, rows in zip(ids, back.poses, strict=True)]
-        return execution_of("libsumo", scenario, seen, "\n".join(back.notes))
+        poses, notes = self._call("drive", net_xml, routes_xml, ids, self.longest_s, DT_S)
+        seen = [_driven(name, rows) for name, rows in zip(ids, poses, strict=True)]
+        return execution_of("libsumo", scenario, seen, "\n".join(notes))
 
     def _call(self, function: str, *args: Any) -> Any:
         worker = _worker(function)
         try:
             return worker.call(*args, timeout_s=self.timeout_s)
         except SimulationFailed as fault:
-            words = worker.said()
-            raise SimulationFailed(f"{fault}; SUMO's words: {words}" if words else str(fault)) from fault
+            if words := worker.said():
+                fault.args = (f"{fault}; SUMO's words: {words}",)
+            raise
 
 
 def _driven(name: str, rows: Floats) -> Trajectory:

@@ -11,22 +11,17 @@ from sgcad_core.case.records import ActorInfo, Evidence, Finding, ObservedContac
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.contact import CLEARANCE_TOLERANCE_M, avoided, closest_approach, first_contact, realised
 from sgcad_core.execution.playback import sizes_of
+from sgcad_core.execution.starts import START_M, off_lane
 from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.agreement import network_disagreements
 from sgcad_core.formats.openscenario.playing.player import entity_boxes, play
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
-from sgcad_core.geometry.distances import distance_to
-from sgcad_core.geometry.plane import Floats
 from sgcad_core.interfaces import Validator
 from sgcad_core.records.specs import Contact
 
 _finding = FindingFactory("agreement")
 
-START_M = 6.0
-"""A start on the shoulder, one and a half lanes from a center line, still stands on the road."""
 SIZE_M = 1e-3
-_DRIVES_M = 0.5
-_OFF_ROAD = ("parked", "departing_road_left", "departing_road_right")
 
 
 class Agreement(Validator):
@@ -115,31 +110,11 @@ def _starts(
     actors: Sequence[ActorInfo], motions: Sequence[Trajectory], graph: LaneGraph, contact: ObservedContact | None
 ) -> list[Finding]:
     """Actors that drive before the first contact and do not start in a lane."""
-    lines = _lane_lines(graph)
-    kinds = {a.id: a for a in actors}
-    until = contact.t_s if contact else np.inf
-    found = []
-    for motion in motions:
-        actor = kinds[motion.actor]
-        if actor.record.laneless or actor.maneuver in _OFF_ROAD or not _drives(motion, until):
-            continue
-        start = np.array([[motion.x_m[0], motion.y_m[0]]])
-        away = min(float(distance_to(line, start)[0]) for line in lines)
-        if away > START_M:
-            remedy = f"start it within {START_M:g} m of a lane's center"
-            found.append(_finding(f"{actor.id} does not start in a lane", actor.id, f"{away:.1f} m away", remedy))
-    return found
-
-
-def _drives(motion: Trajectory, until_s: float) -> bool:
-    before = motion.t_s <= until_s
-    way = np.hypot(motion.x_m - motion.x_m[0], motion.y_m - motion.y_m[0])[before]
-    return bool(way.max() > _DRIVES_M)
-
-
-def _lane_lines(graph: LaneGraph) -> list[Floats]:
-    lanes = [lane.shape for edge in graph.edges.values() for lane in edge.lanes]
-    return [line for line in [*lanes, *(c.via_shape for c in graph.connections)] if len(line) > 1]
+    remedy = f"start it within {START_M:g} m of a lane's center"
+    return [
+        _finding(f"{name} does not start in a lane", name, f"{away:.1f} m away", remedy)
+        for name, away in off_lane(actors, motions, graph, contact)
+    ]
 
 
 # ------------------------------------------------------------------ words

@@ -1,8 +1,8 @@
 """Compares a scenario's behavior with what the narrative states.
 
-Vehicles, initial headings, maneuvers, exits of turns and the first contact. Only what the text states is asked again;
-an inferred fact gives a note, and of a corner the side that the stated paths make likely gives a doubt. Reads no
-diagram.
+Vehicles, initial headings, maneuvers, exits of turns and the first contact. What a sentence states is a question, since
+the rules may have misread it; an inferred fact gives a note, and of a corner the side that the stated paths make likely
+gives a doubt. A stated contact without an actor of that kind in the scenario is to be repaired. Reads no diagram.
 """
 
 from __future__ import annotations
@@ -13,16 +13,18 @@ from dataclasses import replace
 from typing import ClassVar, Literal
 
 from plugins.validator._courses import SIDES, UNNUMBERED, approaches, course, heading, held
+from plugins.validator._first_contact import contact_findings, stated_contact
 from plugins.validator._near_crash import near_crash_findings
+from plugins.validator._told import about, as_question
 from sgcad_core.case.records import Evidence, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.findings import FindingFactory
 from sgcad_core.interfaces import Validator
 from sgcad_core.reading.behavior.exit_assignment import goes_tail_first, square_rad
-from sgcad_core.reading.contacts.contact_records import ContactFacts
-from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
+from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.layout.road_ways import Way, apart, degree, exits, turn_of, ways_of
+from sgcad_core.reading.reading import Reading
 from sgcad_core.reading.text.compass import angle_of, compass_of_angle
-from sgcad_core.records.specs import Area, BehaviorSpec, Contact, Maneuver, RoadSpec
+from sgcad_core.records.specs import BehaviorSpec, Maneuver, RoadSpec
 
 _finding = FindingFactory("behavior_narrative")
 
@@ -41,48 +43,53 @@ class BehaviorNarrative(Validator):
     """Checks that a scenario's behavior has the vehicles, headings, maneuvers and first contact of the narrative."""
 
     stage: ClassVar[str] = "scenario"
-    version: ClassVar[str] = "4"
+    version: ClassVar[str] = "5"
 
-    areas: Literal["repair", "note"] = "repair"
+    areas: Literal["question", "note"] = "question"
     """Severity if the text does not allow a declared side of contact."""
-    maneuvers: Literal["repair", "note"] = "repair"
+    maneuvers: Literal["question", "note"] = "question"
     """Severity if a stated turn, stop or straight course is missed."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """Contradictions, vehicles first; nothing for scenarios without a behavior or texts without vehicles."""
         if not isinstance(artifact, Scenario) or artifact.behavior is None:
             return []
-        facts = evidence.report.reading.crash
-        if not facts.vehicles:
+        reading = evidence.report.reading
+        if not reading.crash.vehicles:
             return []
         behavior = artifact.behavior
-        found = list(_vehicles(behavior, facts))
+        found = list(_vehicles(behavior, reading))
         spec = evidence.network.spec if evidence.network else None
         if spec is not None:
             ways = {(w.road.id, w.direction): w for w in ways_of(spec)}
-            found += [*_headings(behavior, facts, spec, ways), *_following(behavior, facts, spec, ways)]
-            found += _exits(behavior, facts, spec, ways)
-        found += _maneuvers(behavior, facts, spec, self.maneuvers)
-        return [*found, *_contact(behavior, facts, self.areas), *near_crash_findings(behavior, facts)]
+            found += [*_headings(behavior, reading, spec, ways), *_following(behavior, reading, spec, ways)]
+            found += _exits(behavior, reading, spec, ways)
+        if self.maneuvers == "question":
+            found += _maneuvers(behavior, reading, spec)
+        else:
+            found += [f.model_copy(update={"severity": "note"}) for f in _maneuvers(behavior, reading, spec)]
+        return [*found, *contact_findings(behavior, reading, self.areas), *near_crash_findings(behavior, reading)]
 
 
 # ------------------------------------------------------------------ vehicles
-def _vehicles(behavior: BehaviorSpec, facts: CrashFacts) -> Iterator[Finding]:
+def _vehicles(behavior: BehaviorSpec, reading: Reading) -> Iterator[Finding]:
     """Every vehicle of the report is an actor, and no other vehicle number is."""
-    told = [v.id for v in facts.vehicles]
+    told = [v.id for v in reading.crash.vehicles]
     acting = [a.id for a in behavior.actors if a.id.startswith("V") or a.id in told]
-    for v in facts.vehicles:
+    for v in reading.crash.vehicles:
         if v.id not in acting:
             named = " ".join(str(w) for w in (v.year, v.make, v.model) if w)
-            yield _finding(f"the report's vehicle {v.id} is missing", "actors", ", ".join(acting) or "none",
-                           f"add {v.id}{f', the {named}' if named else ''}",
-                           holds=tuple(Hold(items="actors", at=i, either=({"id": (name,)},))
-                                       for i, name in enumerate(told)))  # fmt: skip
+            found = _finding(f"the report's vehicle {v.id} is missing", "actors", ", ".join(acting) or "none",
+                             f"add {v.id}{f', the {named}' if named else ''}", "doubt",
+                             tuple(Hold(items="actors", at=i, either=({"id": (name,)},))
+                                   for i, name in enumerate(told)))  # fmt: skip
+            asked = as_question(found, reading, about(reading, f"vehicles.{v.id}"), v.id)
+            yield asked if asked.told else found
     for name in acting:
         if name not in told:
             yield _finding("the report numbers no such vehicle", "actors", name,
-                           f"keep to {', '.join(told)}; other road users are P, B or O",
-                           holds=(_unnumbered(name, told, behavior),))  # fmt: skip
+                           f"keep to {', '.join(told)}; other road users are P, B or O", "doubt",
+                           (_unnumbered(name, told, behavior),))  # fmt: skip
 
 
 def _unnumbered(name: str, told: list[str], behavior: BehaviorSpec) -> Hold:
@@ -94,9 +101,9 @@ def _unnumbered(name: str, told: list[str], behavior: BehaviorSpec) -> Hold:
 
 
 # ------------------------------------------------------------------ headings
-def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
+def _headings(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
     for actor in behavior.actors:
-        fact, way = facts.vehicle(actor.id), ways.get((actor.road, actor.direction))
+        fact, way = reading.crash.vehicle(actor.id), ways.get((actor.road, actor.direction))
         if fact is None or way is None or fact.heading is None or not fact.heading_stated:
             continue
         wanted = angle_of(fact.heading) - square_rad(fact, way)
@@ -105,36 +112,39 @@ def _headings(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _
         if goes_tail_first(fact):  # it may face along its way or go along it backward
             off = min(off, *(apart(h, wanted + math.pi) for h in along))
         if off > _FAR_RAD:
-            yield _finding(
+            found = _finding(
                 f"{actor.id} first travels {compass_of_angle(way.heading_rad)}, but the report says {fact.heading}",
-                f"{actor.id}.road", f"{actor.road}, {actor.direction}",
+                f"{actor.id}.road", compass_of_angle(way.heading_rad),
                 _better_ways(wanted, tuple(ways.values()), spec),
                 holds=courses(fact, spec),
             )  # fmt: skip
+            yield as_question(found, reading, [f"vehicles.{actor.id}.heading"], fact.heading)
 
 
-def _following(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
+def _following(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
     """In a stated rear-end crash of two vehicles that do not turn, both head the same way."""
-    told = _stated_contact(facts)
+    facts, told = reading.crash, stated_contact(reading.crash)
     if told is None or (told.striker_area, told.struck_area) != ("front", "back"):
         return
     if max(len(told.striker_may), len(told.struck_may)) > 2:  # a side that the text leaves open
         return
     acting = {actor.id: actor for actor in behavior.actors}
     pair = [(facts.vehicle(name), acting.get(name)) for name in (told.struck, told.striker)]
-    found = [(v, a, ways.get((a.road, a.direction))) for v, a in pair if v is not None and a is not None]
-    if len(found) < 2 or any(v.maneuver not in _ALONG or a.maneuver not in _ALONG for v, a, _ in found):
+    both = [(v, a, ways.get((a.road, a.direction))) for v, a in pair if v is not None and a is not None]
+    if len(both) < 2 or any(v.maneuver not in _ALONG or a.maneuver not in _ALONG for v, a, _ in both):
         return
-    for (leader, _, way), (v, actor, own) in (found, found[::-1]):
+    for (leader, _, way), (v, actor, own) in (both, both[::-1]):
         if v.heading_stated or way is None or own is None or apart(way.heading_rad, own.heading_rad) <= _FAR_RAD:
             continue
         other = leader.heading if leader.heading_stated else compass_of_angle(way.heading_rad)
-        yield _finding(
+        found = _finding(
             f"the front of {told.striker} meets the rear of {told.struck}, but they head different ways",
             f"{v.id}.road", f"{actor.road}, {actor.direction}",
             f"start {v.id} where {leader.id} starts, heading {other}",
             holds=courses(replace(v, heading=other, heading_stated=True), spec),
         )  # fmt: skip
+        at = f"contacts.{facts.contacts.index(told)}"
+        yield as_question(found, reading, [f"{at}.struck_area", f"{at}.striker_area"], f"a rear-end crash, {other}")
         return
 
 
@@ -146,22 +156,21 @@ def _better_ways(wanted: float, ways: tuple[Way, ...], spec: RoadSpec) -> str:
 
 
 # ------------------------------------------------------------------ maneuvers
-def _maneuvers(
-    behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec | None, severity: Literal["repair", "note"]
-) -> Iterator[Finding]:
+def _maneuvers(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec | None) -> Iterator[Finding]:
     for actor in behavior.actors:
-        fact = facts.vehicle(actor.id)
+        fact = reading.crash.vehicle(actor.id)
         if fact is None or not fact.maneuver_stated or not _contradicts(actor.maneuver, fact.maneuver):
             continue
-        yield _finding(f"the report tells another maneuver of {actor.id}", f"{actor.id}.maneuver", actor.maneuver,
-                       f"use {fact.maneuver}", severity, courses(fact, spec))  # fmt: skip
+        found = _finding(f"the report tells another maneuver of {actor.id}", f"{actor.id}.maneuver", actor.maneuver,
+                         f"use {fact.maneuver}", holds=courses(fact, spec))  # fmt: skip
+        yield as_question(found, reading, [f"vehicles.{actor.id}.maneuver"], fact.maneuver)
 
 
-def _exits(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
+def _exits(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
     """A stated turn that goes straight on or to the other side at the end of its way; later turns are not judged."""
     every = tuple(ways.values())
     for actor in behavior.actors:
-        fact, way = facts.vehicle(actor.id), ways.get((actor.road, actor.direction))
+        fact, way = reading.crash.vehicle(actor.id), ways.get((actor.road, actor.direction))
         if fact is None or not fact.maneuver_stated or fact.maneuver != actor.maneuver or way is None:
             continue
         side = SIDES.get(actor.maneuver)
@@ -172,12 +181,13 @@ def _exits(behavior: BehaviorSpec, facts: CrashFacts, spec: RoadSpec, ways: _Way
         if not choices:  # the road as written has no such turn, whatever is asked again
             continue
         leaves = course(way, every, actor.maneuver)["exit_road"]
-        yield _finding(
+        found = _finding(
             f"{actor.id} would leave {actor.road} by {actor.exit_road}, which is no {actor.maneuver}",
             f"{actor.id}.exit_road", f"{actor.road} to {actor.exit_road}",
             f"leave by {' or '.join(leaves)}" if leaves else "start it on a road with that turn",
             holds=(held(actor.id, choices),),
         )  # fmt: skip
+        yield as_question(found, reading, [f"vehicles.{actor.id}.maneuver"], fact.maneuver)
 
 
 def courses(fact: VehicleFacts, spec: RoadSpec | None) -> tuple[Hold, ...]:
@@ -209,72 +219,3 @@ def _contradicts(said: Maneuver, told: Maneuver) -> bool:
     if told in _STILL or said in _STILL:
         return (told in _STILL) != (said in _STILL) and "slowing" not in (said, told)
     return False
-
-
-# ------------------------------------------------------------------ contact
-def _contact(behavior: BehaviorSpec, facts: CrashFacts, severity: Literal["repair", "note"]) -> Iterator[Finding]:
-    told = _stated_contact(facts)
-    if told is None or not _acted(told, behavior):
-        return
-    said = behavior.contacts[0] if behavior.contacts else None
-    if said is None:
-        yield _finding("the report tells a contact, but none is declared", "contacts", "", _declare(told),
-                       holds=_first(told))  # fmt: skip
-    elif {said.striker, said.struck} != {told.striker, told.struck}:
-        yield _finding(f"the report's first contact is between {told.striker} and {told.struck}", "contacts[0]",
-                       f"{said.striker} and {said.struck}", _declare(told), holds=_first(told))  # fmt: skip
-    elif _sides(said) != _sides(told):
-        allowed = all(side in _allowed(told)[name] for name, side in _sides(said).items())
-        doubted = allowed and severity == "repair" and _cornered(said, told) and _moves_as_told(told, behavior, facts)
-        yield _finding("the report tells other sides of the first contact", "contacts[0]", _described(said),
-                       _declare(told), "doubt" if doubted else "note" if allowed else severity,
-                       _first(told, doubted))  # fmt: skip
-
-
-def _stated_contact(facts: CrashFacts) -> ContactFacts | None:
-    """The first contact that the text states; None for a near crash."""
-    return None if facts.near_crash else next((c for c in facts.contacts if c.stated), None)
-
-
-def _cornered(said: Contact, told: ContactFacts) -> bool:
-    """Whether every side that differs is one of the two sides of a stated corner."""
-    sides = _sides(told)
-    return all(len(_allowed(told)[name]) == 2 for name, side in _sides(said).items() if side != sides[name])
-
-
-def _moves_as_told(told: ContactFacts, behavior: BehaviorSpec, facts: CrashFacts) -> bool:
-    """Whether both vehicles move as stated: the side of a corner that was hit follows from that."""
-    does = {actor.id: actor.maneuver for actor in behavior.actors}
-    known = {name: facts.vehicle(name) for name in (told.striker, told.struck)}
-    return all(v is not None and v.heading_stated and does[name] == v.maneuver for name, v in known.items())
-
-
-def _first(told: ContactFacts, decided: bool = False) -> tuple[Hold, ...]:
-    """The first contact with the sides that the text allows; `decided`: of a corner the side that the paths suggest."""
-    sides: dict[str, tuple[Area, ...]] = {"striker_area": told.striker_may, "struck_area": told.struck_may}
-    if decided:
-        likely: dict[str, Area] = {"striker_area": told.striker_area, "struck_area": told.struck_area}
-        sides = {key: (likely[key],) if len(may) == 2 else may for key, may in sides.items()}
-    pair = {"striker": (told.striker,), "struck": (told.struck,)}
-    return (Hold(items="contacts", at=0, either=(pair | sides,)),)
-
-
-def _allowed(told: ContactFacts) -> dict[str, tuple[Area, ...]]:
-    """Sides of each vehicle that the text allows: "left front" may be either."""
-    return {told.striker: told.striker_may, told.struck: told.struck_may}
-
-
-def _acted(told: ContactFacts, behavior: BehaviorSpec) -> bool:
-    return {told.striker, told.struck} <= {a.id for a in behavior.actors}
-
-
-def _sides(contact: Contact | ContactFacts) -> dict[str, str]:
-    return {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
-
-
-def _described(contact: Contact | ContactFacts) -> str:
-    return f"{contact.striker_area} of {contact.striker}, {contact.struck_area} of {contact.struck}"
-
-
-def _declare(told: ContactFacts) -> str:
-    return f"declare striker {told.striker}, struck {told.struck}: {_described(told)}"

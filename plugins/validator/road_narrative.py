@@ -1,7 +1,8 @@
 """Compares a network with the roads of the narrative: lanes, legs, one-way, limits, directions.
 
 Only explicit statements of the text count, each with the readings that it allows ("four-lane" with or without turn
-lanes, if a diagram may show them): a false alarm costs an attempt. Reads the compiled network; north is up.
+lanes, if a diagram may show them). They are questions, since the rules may have misread the text. Reads the compiled
+network; north is up.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from plugins.validator._road_holds import along, carrying, ends, laid, totals
+from plugins.validator._road_told import KIND, Asked, asked_of, lane_fields, used_by
 from sgcad_core.asking.schema_holds import SOME_LANES
 from sgcad_core.case.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.errors import InvalidOutput
@@ -28,7 +30,7 @@ from sgcad_core.roads.lane_total_readings import allowed_totals, may_show_other_
 
 _finding = FindingFactory("road_narrative")
 
-_ORDER = ("refuse", "repair", "doubt", "note")
+_ORDER = ("refuse", "repair", "question", "doubt", "note")
 
 
 class RoadNarrative(Validator):
@@ -39,7 +41,7 @@ class RoadNarrative(Validator):
     """
 
     stage: ClassVar[str] = "road"
-    version: ClassVar[str] = "7"
+    version: ClassVar[str] = "8"
     tolerance_deg: float = 35.0
     """Allowed angle between a drawn road and the compass direction that the report names."""
     limit_tolerance_mph: float = 3.0
@@ -52,18 +54,19 @@ class RoadNarrative(Validator):
             graph = parse_net(artifact.net_xml)
         except InvalidOutput:
             return []
-        facts = evidence.report.reading.roads
+        reading, facts = evidence.report.reading, evidence.report.reading.roads
         drawn, legs, pictured = compiled_roads(graph), junctions(graph), bool(evidence.report.diagrams)
-        found = [
-            *_not_drawn(facts), *_no_circle(facts, graph), *self._legs(facts, len(legs[0]) if legs else 0, pictured),
-            *self._paths(facts, legs, pictured),
-            *self._directions(facts, drawn), *self._one_way(facts, drawn), *self._lanes(facts, drawn, pictured),
-            *(() if pictured else self._lanes_one_way(facts, drawn)), *self._limits(facts, drawn),
+        asked = [
+            *_no_circle(facts, graph), *self._legs(facts, len(legs[0]) if legs else 0, pictured),
+            *self._paths(facts, legs, pictured), *self._directions(facts, drawn), *self._one_way(facts, drawn),
+            *self._lanes(facts, drawn, pictured), *(() if pictured else self._lanes_one_way(facts, drawn)),
         ]  # fmt: skip
+        questions = [asked_of(found, fields, reading) for found, fields in asked]
+        found = [*_not_drawn(facts), *questions, *self._limits(facts, drawn)]
         return sorted(found, key=lambda f: _ORDER.index(f.severity))
 
     # -------------------------------------------------------------- junction
-    def _legs(self, facts: RoadFacts, widest: int, pictured: bool) -> Iterator[Finding]:
+    def _legs(self, facts: RoadFacts, widest: int, pictured: bool) -> Iterator[Asked]:
         junction = facts.junction
         record = junction_kind(junction.kind)
         want = record.legs if record.rule and not record.round else None  # what a text names in so many words
@@ -71,18 +74,18 @@ class RoadNarrative(Validator):
             what = f"the report says {record.called}, but no junction of the network has {want} legs"
             remedy = f"let {want} roads meet at one node"
             holds = (Hold(items="legs", at_least=want), *laid(facts, pictured))
-            yield _finding(what, "junction", f"at most {widest} roads meet", remedy, holds=holds)
+            yield _finding(what, "junction", f"at most {widest} roads meet", remedy, holds=holds), KIND
         elif want == 3 and junction.stated and widest > 3:
             what = f"the report says {record.called}, but the junction has a leg too many"
             remedy = "leave out the leg that the report does not name, unless the diagram shows it"
             alone = not pictured and _alone(facts)
             holds = (Hold(items="legs", at_most=want),) if alone else ()
-            yield _finding(what, "junction", f"{widest} roads meet", remedy, "repair" if alone else "note", holds)
+            yield _finding(what, "junction", f"{widest} roads meet", remedy, holds=holds), KIND if alone else ()
         elif junction.kind == "none" and widest >= 3:
             remedy = "draw a plain road, unless the diagram shows the junction"
-            yield _finding("the report names no junction", "junction", f"{widest} roads meet", remedy, "note")
+            yield _finding("the report names no junction", "junction", f"{widest} roads meet", remedy), ()
 
-    def _paths(self, facts: RoadFacts, junctions: list[tuple[float, ...]], pictured: bool) -> Iterator[Finding]:
+    def _paths(self, facts: RoadFacts, junctions: list[tuple[float, ...]], pictured: bool) -> Iterator[Asked]:
         """Legs that vehicles come from or turn into and that the junction lacks.
 
         A leg that follows only from the sides of contact gives a doubt.
@@ -96,16 +99,16 @@ class RoadNarrative(Validator):
         stated, missing = legs_used(facts), self._without(legs_used(facts, faced=True), drawn)
         if not missing:
             return
-        severity: Severity = "repair" if self._without(stated, drawn) else "doubt"
+        told = self._without(stated, drawn)
         sides = " and ".join(NAMES[leg] for leg in missing)
         what = f"vehicles come from or turn into a road {sides} of the junction, where the network has none"
         seen = ", ".join(NAMES[compass_of_angle(at)] for at in drawn)
         remedy = f"lay a leg {sides} of the junction"
-        yield _finding(what, "junction", f"legs {seen}", remedy, severity, holds=laid(facts, pictured))
+        severity: Severity = "repair" if told else "doubt"
+        found = _finding(what, "junction", f"legs {seen}", remedy, severity, holds=laid(facts, pictured))
+        yield found, used_by(told or missing, facts)
 
-    def _nowhere_to_turn(
-        self, facts: RoadFacts, junctions: list[tuple[float, ...]], pictured: bool
-    ) -> Iterator[Finding]:
+    def _nowhere_to_turn(self, facts: RoadFacts, junctions: list[tuple[float, ...]], pictured: bool) -> Iterator[Asked]:
         """A plain road although a vehicle leaves or enters a driveway or side road that the report names."""
         junction = facts.junction
         missing = self._without(legs_used(facts), [leg for legs in junctions for leg in legs])
@@ -116,7 +119,8 @@ class RoadNarrative(Validator):
         what = f"a vehicle uses a {junction.kind if junction.kind in (DRIVEWAY, ALLEY) else 'road'} {where} the crash"
         holds = (Hold(items="legs", at_least=3), *laid(facts, pictured))
         severity: Severity = "doubt" if pictured else "repair"
-        yield _finding(what, "junction", "no junction", f"lay a leg {where} a junction", severity, holds)
+        found = _finding(what, "junction", "no junction", f"lay a leg {where} a junction", severity, holds)
+        yield found, (*KIND, "junction.stem", *used_by(missing, facts))
 
     def _without(self, legs: Sequence[Compass], drawn: Sequence[float]) -> list[Compass]:
         """Bearings at which no leg is drawn."""
@@ -125,7 +129,7 @@ class RoadNarrative(Validator):
         ]
 
     # -------------------------------------------------------------- directions of travel
-    def _directions(self, facts: RoadFacts, drawn: list[CompiledRoad]) -> Iterator[Finding]:
+    def _directions(self, facts: RoadFacts, drawn: list[CompiledRoad]) -> Iterator[Asked]:
         divided = any(road.lanes.divided for road in facts.streets)
         for v in facts.crash.vehicles:
             in_stall = v.maneuver == "backing" and facts.junction.kind == PARKING_LOT
@@ -136,7 +140,7 @@ class RoadNarrative(Validator):
             word = NAMES[v.heading]
             what = f"{v.id} travels {word}, but no road carries traffic that way"
             remedy = f"give a road lanes that head {word}; x is east, y is north"
-            yield _finding(what, v.id, f"heading {word}", remedy, holds=carrying(v.heading))
+            yield _finding(what, v.id, "no such road", remedy, holds=carrying(v.heading)), (f"vehicles.{v.id}.heading",)
 
     def _carries(self, road: CompiledRoad, way: Compass, divided: bool) -> bool:
         """Whether traffic may head that way; one carriageway of a divided road may stand for both."""
@@ -144,26 +148,28 @@ class RoadNarrative(Validator):
         return bool(road.lanes_towards(way, tolerance)) or (divided and road.along(way, tolerance, either=True))
 
     # -------------------------------------------------------------- one-way
-    def _one_way(self, facts: RoadFacts, drawn: list[CompiledRoad]) -> Iterator[Finding]:
+    def _one_way(self, facts: RoadFacts, drawn: list[CompiledRoad]) -> Iterator[Asked]:
         if any(road.lanes.one_way and len(_driven(road, facts)) > 1 for road in facts.streets):
             return  # it is not known which of the roads is meant
         for road in facts.streets:
             here, name = self._on_axis(road, drawn), AXIS_NAMES[road.axis or "N"]
+            fields = lane_fields(road, facts, "one_way")
             if _both_ways(road, facts) and here and not any(d.forward and d.backward for d in here):
                 what, remedy = f"the {name} road is two-way in the report", "give each direction at least one lane"
                 both = ({"lanes_in": SOME_LANES, "lanes_out": SOME_LANES},)
-                yield _finding(what, _ids(here), "lanes in one direction", remedy, holds=(along(road, both),))
+                yield _finding(what, _ids(here), "lanes in one direction", remedy, holds=(along(road, both),)), fields
             if road.lanes.one_way and here and all(d.forward and d.backward for d in here):
                 what, remedy = f"the {name} road is one-way in the report", "set the other direction's lanes to 0"
                 either = ({"lanes_in": SOME_LANES, "lanes_out": (0,)}, {"lanes_in": (0,), "lanes_out": SOME_LANES})
-                yield _finding(what, _ids(here), "lanes in both directions", remedy, holds=(along(road, either),))
+                found = _finding(what, _ids(here), "lanes in both directions", remedy, holds=(along(road, either),))
+                yield found, fields
 
     def _on_axis(self, road: RoadFact, drawn: list[CompiledRoad]) -> list[CompiledRoad]:
         axis = road.axis
         return [d for d in drawn if axis and d.along(axis, self.tolerance_deg, either=True)]
 
     # -------------------------------------------------------------- lanes
-    def _lanes(self, facts: RoadFacts, drawn: list[CompiledRoad], pictured: bool) -> Iterator[Finding]:
+    def _lanes(self, facts: RoadFacts, drawn: list[CompiledRoad], pictured: bool) -> Iterator[Asked]:
         for road in facts.streets:
             allowed = allowed_totals(road, pictured)
             here = self._on_axis(road, drawn)
@@ -175,23 +181,32 @@ class RoadNarrative(Validator):
             what = f"the {AXIS_NAMES[road.axis or 'N']} road has {said} lanes in both directions together in the report"
             seen = ", ".join(f"{d.id} {d.forward}+{d.backward}" for d in here[:4])
             remedy = "correct lanes_forward and lanes_backward, turn lanes counted"
-            yield _finding(what, _ids(here), seen, remedy, holds=(totals(road, allowed),))
+            found = _finding(what, _ids(here), seen, remedy, holds=(totals(road, allowed),))
+            yield found, lane_fields(road, facts, "lanes_total")
 
-    def _lanes_one_way(self, facts: RoadFacts, drawn: list[CompiledRoad]) -> Iterator[Finding]:
+    def _lanes_one_way(self, facts: RoadFacts, drawn: list[CompiledRoad]) -> Iterator[Asked]:
         """Lanes of one direction: those that the text counts, and at least the number of a vehicle's stated lane.
 
         If the layout that the rules read has other lanes there, the text contradicts itself, and it is not known which
         statement is wrong: no finding.
         """
-        read = {leg.bearing: leg.lanes_in for leg in layout_of_facts(facts).legs}
-        told = [(way, n, n) for road in facts.streets if _adds_up(road) for way, n in road.ways]
+        read = {leg.bearing: leg.lanes_in for leg in layout_of_facts(facts, as_counted=True).legs}
+        told = [
+            (way, n, n, lane_fields(road, facts, f"lanes_{NAMES[way]}bound"))
+            for road in facts.streets if _adds_up(road) for way, n in road.ways
+        ]  # fmt: skip
         for road in (road for road in facts.streets if road.lanes.one_way):
             count, toward = road.lanes.total, road.lanes.one_way_toward
             flows = {toward} if toward else _driven(road, facts)
-            told += [(way, count, count) for way in flows if count and len(flows) == 1]
+            fields = lane_fields(road, facts, "lanes_total")
+            told += [(way, count, count, fields) for way in flows if count and len(flows) == 1]
         driven = [v for v in facts.crash.vehicles if v.heading_stated]
-        told += [(v.heading, abs(v.lane), max(SOME_LANES)) for v in driven if v.heading and v.lane]
-        for way, least, most in told:
+        told += [
+            (v.heading, abs(v.lane), max(SOME_LANES), (f"vehicles.{v.id}.lane",))
+            for v in driven
+            if v.heading and v.lane
+        ]
+        for way, least, most, fields in told:
             approach = turned(way, 180)
             there = {d.lanes_towards(way, self.tolerance_deg) for d in drawn} - {0}
             fits = any(least <= n <= most for n in there)  # on whichever side of the junction
@@ -201,7 +216,7 @@ class RoadNarrative(Validator):
                 enough = tuple(n for n in SOME_LANES if least <= n <= most)
                 holds = (Hold(items="legs", key="bearing", values=(approach,), either=({"lanes_in": enough},)),)
                 remedy = f"give it {said} lanes towards the crash on the leg {NAMES[approach]} of it"
-                yield _finding(what, f"leg {approach}", f"{max(there)} lanes", remedy, holds=holds)
+                yield _finding(what, f"leg {approach}", f"{max(there)} lanes", remedy, holds=holds), fields
 
     # -------------------------------------------------------------- limits
     def _limits(self, facts: RoadFacts, drawn: list[CompiledRoad]) -> Iterator[Finding]:
@@ -255,10 +270,10 @@ def _not_drawn(facts: RoadFacts) -> Iterator[Finding]:
         yield _finding(not_drawn([kind]), "junction", record.called, record.remedy, record.severity)
 
 
-def _no_circle(facts: RoadFacts, graph: LaneGraph) -> Iterator[Finding]:
+def _no_circle(facts: RoadFacts, graph: LaneGraph) -> Iterator[Asked]:
     """A finding if the report tells a roundabout and the network has none."""
     record = junction_kind(facts.junction.kind)
     if record.round and facts.junction.stated and not graph.circles:
         what = f"the crash happened at {record.called}, and the network has none"
         remedy = "draw its circle: one-way pieces around, counterclockwise (circle), every leg yields"
-        yield _finding(what, "junction", "no roundabout", remedy)
+        yield _finding(what, "junction", "no roundabout", remedy), KIND

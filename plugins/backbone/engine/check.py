@@ -7,7 +7,11 @@ one plain forward pass each, without cache. Knows no report and no decoder.
 
 from __future__ import annotations
 
+import hashlib
+import os
 from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import torch
@@ -18,6 +22,8 @@ from plugins.backbone.engine.faults import WrongBatch
 from plugins.backbone.engine.records import Picture, Prompt
 from plugins.backbone.engine.runner import Runner
 
+_APART = {"one batch": False, "two caches": True}
+"""Words of a kept answer."""
 _BEHIND = (3, 1, 1)
 """Tokens fed at each step of the check: a chunk, then single ones."""
 
@@ -35,6 +41,32 @@ def batching(model: Any, family: Family, picture: Picture | None) -> bool:
         f"{type(model).__name__} gives other logits in a batch than alone (error over spread, {'; '.join(faults)}, "
         f"limit {tolerance(model):g}); use another model, or attn_implementation eager"
     )
+
+
+def kept_batching(model: Any, family: Family, picture: Picture | None, folder: Path) -> bool:
+    """`batching`, kept in a folder for the next start: it follows from architecture, libraries and device, not from
+    the weights, and costs a small model as much as its loading."""
+    file = folder / f"batching-{_fingerprint(model, picture)}"
+    with suppress(OSError, KeyError):
+        return _APART[file.read_text()]
+    apart = batching(model, family, picture)
+    with suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True)
+        partial = file.with_suffix(f".{os.getpid()}")
+        partial.write_text(next(word for word, kind in _APART.items() if kind is apart))
+        partial.replace(file)
+    return apart
+
+
+def _fingerprint(model: Any, picture: Picture | None) -> str:
+    import transformers
+
+    about = (
+        type(model).__qualname__, model.config.to_json_string(), str(model.dtype), model.device.type,
+        torch.backends.cpu.get_cpu_capability(), torch.__version__, transformers.__version__, picture is not None,
+        *(file.read_text(encoding="utf-8") for file in sorted(Path(__file__).parent.glob("*.py"))),
+    )  # fmt: skip
+    return hashlib.sha256(repr(about).encode()).hexdigest()[:32]
 
 
 def tolerance(model: Any) -> float:

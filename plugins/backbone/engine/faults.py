@@ -17,6 +17,8 @@ from collections.abc import Callable
 
 import torch
 
+from sgcad_core.errors import PluginFault
+
 
 class EngineFault(Exception):
     """Root of the tree; never raised itself."""
@@ -52,6 +54,8 @@ class WrongBatch(EngineFault):
 
 def is_memory(fault: BaseException) -> bool:
     """True if memory ran out, on a GPU or in the allocator of the CPU."""
+    if isinstance(fault, PluginFault) and fault.__cause__:  # a decoder's
+        fault = fault.__cause__
     said = str(fault).lower()
     full = isinstance(fault, RuntimeError) and "alloc" in said and "memory" in said
     return full or isinstance(fault, torch.OutOfMemoryError | MemoryError)

@@ -123,8 +123,13 @@ def _picked(job: Job, rows: list[Tensor], mask: Mask | None, free: list[int], fi
     """One token for each position; if plausibility and grammar leave none, the most likely one with context."""
     full = [row.to(torch.float32, copy=True) for row in rows]
     scores = job.request.policy.scores(full[0], full[1] if len(full) > 1 else None)
-    if not isinstance(scores, Tensor) or scores.shape != rows[0].shape:
-        raise _unsound(job, f"scores are {_described(scores)}, expected logits {tuple(rows[0].shape)}")
+    if (
+        not isinstance(scores, Tensor)
+        or scores.shape != full[0].shape
+        or not scores.is_floating_point()
+        or scores.device != full[0].device
+    ):
+        raise _unsound(job, f"scores are {_described(scores)}, expected float logits {_place(full[0])}")
     may = None
     if mask is not None:
         mask[~mask.any(-1)] = -1  # a dead end: the job stops, but something must be drawn
@@ -157,11 +162,17 @@ def _drawn(job: Job, scores: Tensor, free: list[int]) -> Tensor:
 
 
 def _unsound(job: Job, what: str) -> BadScores:
-    return BadScores(f"decoder {type(job.request.policy).__name__}: its {what} behind token {len(job.answer.ids)}")
+    return BadScores(f"{what} behind token {len(job.answer.ids)}")
 
 
 def _described(found: object) -> str:
-    return f"{found.dtype} {tuple(found.shape)}" if isinstance(found, Tensor) else repr(found)[:80]
+    if isinstance(found, Tensor):
+        return f"{found.dtype} {_place(found)}"
+    return "None" if found is None else type(found).__name__
+
+
+def _place(found: Tensor) -> str:
+    return f"{tuple(found.shape)} on {found.device}"
 
 
 def _set_result(job: Job, one: ScoredChunk, lists: list[list[float]]) -> None:

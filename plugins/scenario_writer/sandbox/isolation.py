@@ -34,6 +34,8 @@ _ARCHITECTURES: Mapping[str, tuple[int, frozenset[int]]] = {
     ))),
 }  # fmt: skip
 
+_WAIT4 = {"x86_64": 61, "aarch64": 260}
+
 
 def isolate(channels: Sequence[int]) -> bool:
     """Continues in new namespaces, without network; False if the system does not allow it.
@@ -62,6 +64,14 @@ def _end_like(child: int, channels: Sequence[int]) -> None:
     os._exit(128 + os.WTERMSIG(status) if os.WIFSIGNALED(status) else os.WEXITSTATUS(status))
 
 
+def split() -> int:
+    """Goes on in two processes, of which the second ends with the first; as `os.fork` says which one this is."""
+    child = os.fork()
+    if not child and sys.platform.startswith("linux"):
+        _libc().prctl(_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+    return child
+
+
 def shut_in(folder: str) -> bool:
     """Makes an empty folder the root of all paths; False if the system does not allow it."""
     try:
@@ -86,12 +96,15 @@ def limit(cpu_s: int, memory_mb: int) -> None:
         resource.setrlimit(what, (soft, hard))
 
 
-def filter_calls() -> bool:
-    """Allows only system calls that compute; all others answer EPERM. False if there is no filter for this machine."""
+def filter_calls(*, waits: bool = False) -> bool:
+    """Allows only system calls that compute; all others answer EPERM. False if there is no filter for this machine.
+
+    `waits`: and that which waits for a child.
+    """
     known = _ARCHITECTURES.get(platform.machine()) if sys.platform.startswith("linux") else None
     if known is None:
         return False
-    libc, code = _libc(), _program(*known)
+    libc, code = _libc(), _program(known[0], known[1] | ({_WAIT4[platform.machine()]} if waits else set()))
     buffer = ctypes.create_string_buffer(code, len(code))
     program = struct.pack("HxxxxxxP", len(code) // 8, ctypes.addressof(buffer))
     if libc.prctl(_NO_NEW_PRIVS, 1, 0, 0, 0) != 0:

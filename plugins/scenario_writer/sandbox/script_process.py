@@ -1,7 +1,9 @@
-"""The sandbox's process: confines itself and reports that, checks the rules, runs one script, answers one JSON object.
+"""The sandbox's two processes, both confined: one reads and runs a script, the other hands on what it says.
 
 The script must leave an `xosc.Scenario` in its variable `scenario`. No part of the script is parsed before the
-confinement is in place. Runs once and ends; knows nothing of the project.
+confinement is in place. The channel to the project is open in the second process alone, in which no line of a script
+runs: what the first one says is taken as the script's word, a scenario or a fault, whatever wrote it. There is no
+secret that a script could read. Runs once and ends; knows nothing of the project.
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import re
 import sys
 import traceback
 import xml.etree.ElementTree as ET
@@ -21,6 +24,7 @@ from plugins.scenario_writer.sandbox.script_rules import breaches, parsed
 
 Json = dict[str, Any]
 MAX_XML = 5_000_000
+MAX_SAID = 16_000_000
 RECURSION = 400
 
 
@@ -34,19 +38,59 @@ def main(site: str, status: int) -> None:
         os._exit(0)
     modules = fronts(site)
     walls = {"namespaces": own, "root": own and isolation.shut_in(job["folder"])}
+    heard, said = os.pipe()
+    if child := isolation.split():
+        for channel in (said, status):
+            os.close(channel)
+        _hand_on(child, heard, job)
+    os.dup2(said, 1)
+    for channel in (heard, said):
+        os.close(channel)
     isolation.limit(job["cpu_s"], job["memory_mb"])
     walls["calls"] = isolation.filter_calls()
     _tell(status, isolated=True, walls=[name for name, up in walls.items() if up])
     printed: list[str] = []
-    secret = job.pop("secret").encode()
     try:
         answer = _unchecked(job["source"]) if job["unchecked"] else _run(job["source"], modules, printed)
     except BaseException as fault:  # noqa: BLE001 - whatever a script raises is its answer
         answer = _fault(fault)
-    _write(1, secret + json.dumps({**answer, "printed": _short("".join(printed), 2000)}).encode())
+    _write(1, json.dumps({**answer, "printed": _short("".join(printed), 2000)}).encode())
     os._exit(0)  # at once: no finalizer of the script runs
 
 
+# ------------------------------------------------------------------ the process that hands on
+def _hand_on(script: int, heard: int, job: Json) -> None:
+    """Reads what the script's process says, waits for its end, hands on a scenario or a fault; ends likewise."""
+    isolation.limit(job["cpu_s"], job["memory_mb"])
+    isolation.filter_calls(waits=True)
+    said = bytearray()
+    while len(said) <= MAX_SAID and (piece := os.read(heard, 1 << 16)):
+        said += piece
+    if len(said) > MAX_SAID:
+        _write(1, bytes(said))  # more than is taken there, too
+        os._exit(0)
+    ended = os.waitpid(script, 0)[1]
+    if os.WIFSIGNALED(ended) or not said:
+        os._exit(128 + os.WTERMSIG(ended) if os.WIFSIGNALED(ended) else os.WEXITSTATUS(ended))
+    _write(1, _taken(bytes(said)))
+    os._exit(0)
+
+
+def _taken(said: bytes) -> bytes:
+    """The answer anew, if it is one; else an empty one. What begins otherwise than a scenario is none."""
+    try:
+        answer = json.loads(said)
+    except (ValueError, RecursionError, MemoryError):
+        return b"{}"
+    if not isinstance(answer, dict) or (answer.get("ok") and not _SCENARIO.match(str(answer.get("xosc")))):
+        return b"{}"
+    return json.dumps(answer).encode()
+
+
+_SCENARIO = re.compile(r"<\?xml[^<>]{0,99}\?>\s{0,9}<OpenSCENARIO[\s>]")
+
+
+# ------------------------------------------------------------------ the process that runs the script
 def _tell(status: int, **what: object) -> None:
     """Reports the confinement and closes the channel, so that nothing that runs later can report it again."""
     _write(status, json.dumps(what).encode())
@@ -73,7 +117,8 @@ def _unchecked(source: str) -> Json:
     """Runs with every builtin and module, to test the confinement without the rules."""
     space: Json = {"__name__": "__main__"}
     exec(compile(source, "<scenario>", "exec"), space)  # noqa: S102 - what this process is for
-    return {"ok": True, "xosc": str(space.get("found", ""))}
+    found = _short(str(space.get("found", "")), 600)
+    return {"ok": False, "layer": "execution", "kind": "Found" if found else "Nothing", "message": found}
 
 
 def _result(space: Json, xosc: ModuleType) -> Json:

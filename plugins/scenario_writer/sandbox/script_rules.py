@@ -48,6 +48,20 @@ _FORBIDDEN = frozenset((  # noqa: SIM905 - as above
     "gi_frame gi_code gi_yieldfrom cr_frame cr_code cr_await ag_frame ag_code tb_frame tb_next tb_lasti f_back "
     "f_globals f_locals f_builtins f_code co_code co_consts func_globals func_code mro with_traceback format_map"
 ).split())  # fmt: skip
+_REFUSED_NODES: Mapping[str, str] = dict.fromkeys(
+    ("AsyncFunctionDef", "Await", "AsyncFor", "AsyncWith"), "async code is not run"
+) | dict.fromkeys(("Interactive", "Expression", "FunctionType"), "only a module is run")
+_ALLOWED_NODES = frozenset((  # noqa: SIM905 - as above
+    "Module FunctionDef ClassDef Return Delete Assign AugAssign AnnAssign For While If With Match Raise Try TryStar "
+    "Assert Import ImportFrom Global Nonlocal Expr Pass Break Continue "
+    "BoolOp NamedExpr BinOp UnaryOp Lambda IfExp Dict Set ListComp SetComp DictComp GeneratorExp Yield YieldFrom "
+    "Compare Call FormattedValue JoinedStr Constant Attribute Subscript Starred Name List Tuple Slice "
+    "Load Store Del And Or Add Sub Mult MatMult Div Mod Pow LShift RShift BitOr BitXor BitAnd FloorDiv Invert Not "
+    "UAdd USub Eq NotEq Lt LtE Gt GtE Is IsNot In NotIn comprehension ExceptHandler arguments arg keyword alias "
+    "withitem match_case MatchValue MatchSingleton MatchSequence MatchMapping MatchClass MatchStar MatchAs MatchOr "
+    "TypeIgnore"
+).split())  # fmt: skip
+"""Syntax by name: what a later Python adds is refused until somebody has looked at it."""
 _PRIVATE_IN_TEXT = re.compile(rf"__\w+__|\{{[^{{}}]*\.(?:_|(?:{'|'.join(sorted(_FORBIDDEN))})\b)")
 """Private names, and templates that read a forbidden attribute when they are formatted."""
 
@@ -84,13 +98,17 @@ def _of(node: ast.AST) -> Iterator[Breach]:
     if isinstance(node, ast.Import | ast.ImportFrom | ast.alias):
         yield from () if isinstance(node, ast.alias) else _imports(node)
         return
-    if isinstance(node, ast.AsyncFunctionDef | ast.Await | ast.AsyncFor | ast.AsyncWith):
-        yield Breach(line, "async code is not run", type(node).__name__, "write plain functions")
+    if type(node).__name__ in _REFUSED_NODES:
+        yield Breach(line, _REFUSED_NODES[type(node).__name__], type(node).__name__, "write plain functions")
+    elif type(node).__name__ not in _ALLOWED_NODES:
+        yield Breach(line, "this syntax is not known here", type(node).__name__, "write it in a simpler way")
     if isinstance(node, ast.Constant):
         if isinstance(node.value, str | bytes) and _PRIVATE_IN_TEXT.search(_text(node.value)):
             yield Breach(line, "a text names something private", _text(node.value)[:60], "leave it out")
         return
     if isinstance(node, ast.Attribute) and node.attr == "format" and not isinstance(node.value, ast.Constant):
+        yield Breach(line, "only a written-out text is formatted", "format", "use an f-string")
+    if isinstance(node, ast.MatchClass) and "format" in node.kwd_attrs:  # reads the attribute as a dot would
         yield Breach(line, "only a written-out text is formatted", "format", "use an f-string")
     own = isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self"
     for name in _identifiers(node):

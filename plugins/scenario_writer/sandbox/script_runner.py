@@ -3,8 +3,8 @@
 The interpreter starts in isolated mode with an empty environment, in an empty folder, as a process group of its own
 that is killed as a whole. Two channels come back. *Status* names the walls (parts of the confinement) in place:
 it is written and closed before a line of the script is read, so a script cannot forge it. The *answer* is as untrusted
-as the script that may have written it: it is bounded, begins with a secret of this run, and is read by a strict model;
-an answer that does not fit is a fault of that script only.
+as the script that may have written it. It comes from a process in which no line of the script runs, is bounded and read
+by a strict model; an answer that does not fit is a fault of that script only.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import secrets
 import selectors
 import signal
 import subprocess
@@ -31,7 +30,7 @@ from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.system.temp_folders import temp_folder
 
 Layer = Literal["parse", "rules", "execution", "limit"]
-MAX_ANSWER = 16_000_000
+MAX_ANSWER = 15_000_000
 MAX_ERRORS = 100_000
 MAX_STATUS = 1_000
 Wall = Literal["namespaces", "root", "calls"]
@@ -123,11 +122,10 @@ def run_script(
     """
     limits = limits or Limits()
     started = time.monotonic()
-    secret = secrets.token_hex(16)
     with temp_folder("script") as folder:
         job = {
             "source": source, "folder": str(folder), "cpu_s": limits.cpu_s, "memory_mb": limits.memory_mb,
-            "allow_without_namespace": allow_without_namespace, "unchecked": unchecked, "secret": secret,
+            "allow_without_namespace": allow_without_namespace, "unchecked": unchecked,
         }  # fmt: skip
         channels, ended = _run_process(job, str(folder), limits.wall_s)
     status = _status(channels, ended)
@@ -137,7 +135,7 @@ def run_script(
             "(sysctl user.max_user_namespaces, a container's seccomp profile), or set "
             "scenario_writer.allow_without_namespace: true to rely on its other walls"
         )
-    ran = _ran(channels, ended, limits, secret.encode())
+    ran = _ran(channels, ended, limits)
     return replace(ran, walls=status.walls, seconds=time.monotonic() - started)
 
 
@@ -217,7 +215,17 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
     process.wait()
     for pipe in (process.stdout, process.stderr):
         if pipe:
+            _await_end(pipe.fileno())
             pipe.close()
+
+
+def _await_end(channel: int) -> None:
+    """Reads on until every process that could write there is gone, which after the kill is a moment."""
+    until = time.monotonic() + 2.0
+    with selectors.DefaultSelector() as selector:
+        selector.register(channel, selectors.EVENT_READ)
+        while selector.select(max(0.0, until - time.monotonic())) and os.read(channel, 1 << 20):
+            continue
 
 
 # ------------------------------------------------------------------ its answer
@@ -231,7 +239,7 @@ def _status(channels: _Channels, ended: int) -> _Status:
         raise MissingTool(f"the sandbox did not start (exit code {ended}): {said}") from fault
 
 
-def _ran(channels: _Channels, ended: int, limits: Limits, secret: bytes) -> Ran:
+def _ran(channels: _Channels, ended: int, limits: Limits) -> Ran:
     """What came back; never raises, whatever the script wrote."""
     if channels.cut == "time":
         return _limit_fault("TimeLimit", f"the script ran longer than {limits.wall_s:g} s")
@@ -241,10 +249,8 @@ def _ran(channels: _Channels, ended: int, limits: Limits, secret: bytes) -> Ran:
     if not said:
         return _death(ended, limits)
     try:
-        answer = _ANSWER.validate_json(said.removeprefix(secret)) if said.startswith(secret) else None
+        answer = _ANSWER.validate_json(said)
     except ValidationError:
-        answer = None
-    if answer is None:
         return _limit_fault("ForgedAnswer", "what came back on the sandbox's channel is not the sandbox's own answer")
     if isinstance(answer, _Written):
         return Ran(xosc=answer.xosc, printed=answer.printed)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import pytest
 import torch
 import transformers as tf
 
-from plugins.backbone.engine.check import batching
+from plugins.backbone.engine.check import batching, kept_batching
 from plugins.backbone.engine.families import Family, family_of
 from plugins.backbone.engine.faults import DoesNotFit, EngineFault, TooBig, TooLong, WrongBatch
 from plugins.backbone.engine.grammar import GrammarCompiler
@@ -183,6 +184,24 @@ def test_a_model_that_is_wrong_in_a_batch_is_refused_at_the_start() -> None:
     model, family = built(Muddled)
     with pytest.raises(WrongBatch, match=r"Muddled gives other logits in a batch .*one batch: .*two caches: "):
         batching(model, family, None)
+
+
+def test_how_a_model_is_batched_is_kept_and_a_wrong_one_is_refused_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model, family = tiny.build("text_only")
+    assert kept_batching(model, family, None, tmp_path) is batching(model, family, None)
+    assert len(list(tmp_path.iterdir())) == 1
+    monkeypatch.setattr("plugins.backbone.engine.check.batching", lambda *_: pytest.fail("checked again"))
+    assert kept_batching(model, family, None, tmp_path) is False
+    with pytest.raises(pytest.fail.Exception):
+        kept_batching(*built(Cramped), None, tmp_path)
+    monkeypatch.undo()
+    for _ in range(2):
+        with pytest.raises(WrongBatch):
+            kept_batching(*built(Muddled), None, tmp_path)
+    (tmp_path / "file").touch()
+    assert kept_batching(model, family, None, tmp_path / "file") is False
 
 
 def test_a_dead_end_names_the_field() -> None:

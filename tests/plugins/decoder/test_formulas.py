@@ -19,6 +19,7 @@ from plugins.decoder.nucleus import Nucleus
 from plugins.decoder.plausible import Plausible
 from plugins.decoder.vcd import Vcd, kept_signal
 from sgcad_core.case.records import Context, Diagram
+from sgcad_core.errors import PluginFault
 
 torch.set_num_threads(1)
 VOCABULARY = 17
@@ -170,5 +171,5 @@ def test_vcd_noise_grows_with_the_step() -> None:
 
 
 def test_a_contrast_without_the_second_row_is_an_error_that_says_so() -> None:
-    with pytest.raises(ValueError, match="needs the row without context"):
+    with pytest.raises(PluginFault, match="needs the row without context"):
         Cad(alpha=0.7).scores(torch.zeros(1, 3), None)

@@ -12,7 +12,7 @@ from plugins.driver.idm import Idm
 from plugins.driver.reference import Reference
 from plugins.driver.replay import Replay
 from plugins.driver.script import Script
-from sgcad_core.errors import ConfigError
+from sgcad_core.errors import ConfigError, SimulationFailed
 from sgcad_core.handover.drive import drive
 from sgcad_core.handover.script import staging_for
 from tests.plugins.driver.seats import ride, task, user, view
@@ -88,15 +88,28 @@ def test_a_combination_names_what_is_wrong_in_it():
         Combined(of=[{"ttc_s": 1.0}, "aeb"])
 
 
+def replayed(tmp_path, x, y=0.0):
+    """V1 on places 0.05 s apart; it begins at -63.23 m with 10 m/s."""
+    places = np.broadcast_arrays(x, y)
+    lines = [f"{k / 20:.2f},V1,{east:.4f},{north:.4f},0.0" for k, (east, north) in enumerate(zip(*places, strict=True))]
+    (tmp_path / "made.csv").write_text("t_s,actor,x_m,y_m,heading_rad\n" + "\n".join(lines) + "\n0.0,V2,1,1,1\n")
+    return drive(staging_for(crossing(), "V1"), Replay(file=tmp_path / "{case}.csv"))
+
+
 def test_a_given_trajectory_is_driven_whatever_happens(tmp_path):
-    file = tmp_path / "made.csv"
-    lines = [f"{t:.2f},V1,{-63.23 + 8 * t:.3f},2.0,0.0" for t in np.arange(0, 10, 0.5)]
-    file.write_text("t_s,actor,x_m,y_m,heading_rad\n" + "\n".join(lines) + "\n0.0,V2,1,1,1\n")
-    driven = drive(staging_for(crossing(), "V1"), Replay(file=tmp_path / "{case}.csv"))
-    k = 40
-    assert driven.ego.x_m[k] == pytest.approx(-63.23 + 8 * 2.0, abs=1e-3)
-    assert driven.ego.y_m[k] == pytest.approx(2.0)
-    assert driven.ego.speed_mps[k] == pytest.approx(8.0)
+    t = np.arange(200) / 20
+    braking = -63.23 + np.where(t < 10 / 3, 10 * t - 1.5 * t**2, 100 / 6)
+    driven = replayed(tmp_path, braking)
+    assert driven.ego.x_m[40] == pytest.approx(-63.23 + 20 - 6, abs=1e-3)
+    assert driven.ego.speed_mps[40] == pytest.approx(4.0, abs=0.01)
+    assert driven.contact is None
+
+
+def test_a_given_trajectory_that_jumps_is_no_crash_avoided(tmp_path):
+    t = np.arange(200) / 20
+    for x, y in [(-63.23 + 10 * t + 30 * (t > 2), 0.0), (-63.23 + 10 * t, 4.0 * (t > 2)), (-63.23 + 0 * t, 0.0)]:
+        with pytest.raises(SimulationFailed, match="the driver of V1 asks for impossible motion"):
+            replayed(tmp_path, x, y)
 
 
 HEAD = "t_s,x_m,y_m,heading_rad\n"

@@ -1,6 +1,7 @@
 """Somebody else's driver: a callable, and a program behind a socket."""
 
 import contextlib
+import json
 import socket
 import subprocess
 import sys
@@ -12,7 +13,7 @@ import pytest
 from pydantic import ValidationError
 
 from plugins.driver.external import External, _Line
-from sgcad_core.errors import ConfigError, SimulationFailed
+from sgcad_core.errors import ConfigError, PluginFault, SimulationFailed
 from sgcad_core.handover.drive import drive
 from sgcad_core.handover.outcome import judge_drive
 from sgcad_core.handover.script import staging_for
@@ -21,6 +22,7 @@ from tests.sgcad_core.handover.scenes import rear_end
 EXAMPLE = Path(__file__).parents[3] / "docs" / "examples" / "driver_socket.py"
 HERE = "tests.plugins.driver.test_external"
 SAID = []
+FAULT = []
 
 
 def brake_at_once(message):
@@ -43,7 +45,12 @@ def along(message):
     if "task" in message:
         return {}
     ego = message["view"]["ego"]
-    return {"trajectory": [[0.0, ego["x_m"], ego["y_m"], 0.0, 10.0], [1.0, ego["x_m"] + 10.0, ego["y_m"], 0.0, 10.0]]}
+    return {"trajectory": [[0.0, ego["x_m"], ego["y_m"], 0.0, 15.0], [1.0, ego["x_m"] + 15.0, ego["y_m"], 0.0, 15.0]]}
+
+
+def falls(message):
+    if "view" in message:
+        raise FAULT[-1]
 
 
 def nonsense(message):
@@ -67,7 +74,7 @@ def test_a_callable_sees_itself_and_the_others_20_times_a_second():
 def test_a_callable_may_steer_or_give_a_trajectory():
     assert drive(staged_rear_end(), External(target=f"{HERE}:Swerve")).contact is None
     driven = drive(staged_rear_end(), External(target=f"{HERE}:along"))
-    assert driven.ego.speed_mps[10] == pytest.approx(10.0)
+    assert driven.ego.speed_mps[10] == pytest.approx(15.0)
 
 
 def test_the_example_avoids_a_standing_car_over_its_socket():
@@ -172,8 +179,31 @@ def test_an_answer_deeper_than_json_goes_is_told():
 
 def test_an_answer_without_an_end_is_told():
     port = served(lambda line: (line.makefile("rb").readline(), line.sendall(b"1" * (1 << 21)), time.sleep(1.0)))
-    with pytest.raises(SimulationFailed, match=r"answered b'1+': expected one JSON object a line, below 1048576 bytes"):
+    with pytest.raises(SimulationFailed, match=r"answered b'1+': expected one JSON object .* at most 500000 bytes"):
         drive(staged_rear_end(), External(port=port))
+
+
+def test_a_frame_of_a_megabyte_is_refused_by_its_size_before_it_is_parsed(monkeypatch):
+    """It would be a good answer but for its length."""
+    parsed, loads = [], json.loads
+    monkeypatch.setattr(json, "loads", lambda said: parsed.append(len(said)) or loads(said))
+    frame = b'{"acceleration_mps2": -5.0' + b" " * 1_000_000 + b"}\n"
+
+    def answers(line):
+        with contextlib.suppress(OSError):
+            for _ in line.makefile("rb"):
+                line.sendall(b"{}\n" if not parsed else frame)
+
+    with pytest.raises(SimulationFailed, match=r"answered b'.*': expected one JSON object .* at most 500000 bytes"):
+        drive(staged_rear_end(), External(port=served(answers)))
+    assert parsed == [2]
+
+
+@pytest.mark.parametrize("raised", [KeyError("x"), ZeroDivisionError(), SystemExit(3), RecursionError(), MemoryError()])
+def test_a_callable_that_raises_ends_its_own_drive_only(raised):
+    FAULT.append(raised)
+    with pytest.raises(PluginFault, match=f"driver 'external' .*its seat's act raised {type(raised).__name__}"):
+        drive(staged_rear_end(), External(target=f"{HERE}:falls"))
 
 
 def test_one_door_is_needed_and_not_two():

@@ -7,6 +7,7 @@ import time
 import zlib
 
 import numpy as np
+import pypdf
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -20,21 +21,25 @@ from sgcad_core.system.report_files import read_regular
 from tests.plugins.report_reader.test_readers import NARRATIVE, folder, png
 
 
-def pdf(content: bytes, pages: int = 1, more: str = "") -> bytes:
-    """A PDF whose pages all draw the same stream, compressed."""
+def pdf(content: bytes, pages: int = 1, more: str = "", *, coding: str = "/FlateDecode", picture: str = "") -> bytes:
+    """A PDF whose pages all draw the same stream, compressed, and have a picture of a coding."""
     packed = zlib.compress(content)
     kids = " ".join(f"{10 + i} 0 R" for i in range(pages))
     objects = {
         1: "<< /Type /Catalog /Pages 2 0 R >>",
         2: f"<< /Type /Pages /Count {pages} /Kids [{kids}] >>",
         3: "<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica >>",
-        4: f"<< /Length {len(packed)} /Filter /FlateDecode {more} >>\nstream\n{packed.decode('latin-1')}\nendstream",
+        4: f"<< /Length {len(packed)} /Filter {coding} {more} >>\nstream\n{packed.decode('latin-1')}\nendstream",
         **{
             10 + i: "<< /Type /Page /Parent 2 0 R /MediaBox [0 0 612 792] /Contents 4 0 R "
-            "/Resources << /Font << /F1 3 0 R >> >> >>"
+            f"/Resources << /Font << /F1 3 0 R >> {'/XObject << /Im0 5 0 R >>' if picture else ''} >> >>"
             for i in range(pages)
         },
     }
+    if picture:
+        about = "/Type /XObject /Subtype /Image /Width 300 /Height 300 /BitsPerComponent 1 /ColorSpace /DeviceGray"
+        coded = f"/Filter /{picture} /DecodeParms << /JBIG2Globals 4 0 R >> /Length 4"
+        objects[5] = f"<< {about} {coded} >>\nstream\n\x97JB2\nendstream"
     out, places = b"%PDF-1.4\n", {}
     for number, text in objects.items():
         places[number] = len(out)
@@ -72,6 +77,43 @@ def test_a_pdf_that_draws_without_end_is_told_in_seconds(tmp_path, content, page
     with pytest.raises(BadInput, match=rf"r\.pdf: .*{match}"):
         _read(tmp_path, "r.pdf", pdf(content, pages))
     assert time.process_time() - started < 30
+
+
+FILTERS = (
+    "JBIG2Decode", "JPXDecode", "CCITTFaxDecode", "DCTDecode", "Crypt", "LZWDecode", "RunLengthDecode", "Foo", "42"
+)  # fmt: skip
+
+
+@pytest.fixture
+def jbig2dec(tmp_path):
+    """A program for JBIG2 that pypdf knows, and that notes that it was started."""
+    program = tmp_path / "bin" / "jbig2dec"
+    program.parent.mkdir()
+    program.write_text(f"#!/bin/sh\ntouch {tmp_path}/started\n")
+    program.chmod(0o755)
+    with pypdf.apply_configuration(jbig2dec_binary=str(program)):
+        yield tmp_path / "started"
+
+
+@pytest.mark.parametrize("name", FILTERS)
+def test_a_picture_in_any_coding_costs_the_picture_alone_and_starts_no_program(tmp_path, jbig2dec, name):
+    text = "BT /F1 12 Tf 72 720 Td (The front of V1 struck the rear of V2 there.) Tj ET"
+    assert "struck the rear" in _read(tmp_path, "r.pdf", pdf(text.encode(), picture=name)).narrative
+    assert not jbig2dec.exists()
+
+
+@pytest.mark.parametrize("name", FILTERS)
+def test_a_text_in_any_coding_is_read_or_refused(tmp_path, jbig2dec, name):
+    with contextlib.suppress(BadInput):
+        _read(tmp_path, "r.pdf", pdf(b"BT (The front of V1 struck V2) Tj ET", coding=f"/{name}"))
+    assert not jbig2dec.exists()
+
+
+def test_a_stream_that_is_damaged_once_unpacked_is_given_up_in_seconds(tmp_path):
+    started = time.process_time()
+    with pytest.raises(BadInput, match="text layer cannot be read"):
+        _read(tmp_path, "r.pdf", pdf(b" " * 20_000_000, coding="[/FlateDecode /FlateDecode]"))
+    assert time.process_time() - started < 2
 
 
 @settings(deadline=None)  # a busy machine takes seconds for the first

@@ -154,8 +154,8 @@ GERMAN = "Der Unfall ereignete sich auf einer Kreuzung mit vier Armen, als das e
 @pytest.mark.parametrize(
     ("raw", "message"),
     [
-        (b"", "has 0 words, at least 5"),
-        (b"   \n", "has 0 words, at least 5"),
+        (b"", "has 0 words, at least 3"),
+        (b"   \n", "has 0 words, at least 3"),
         (bytes(range(256)) * 9, "binary data"),
         (b"The crash " * 1_100_000, "11,000,000 bytes of text; a narrative has at most 100,000 characters"),
         (GERMAN.encode(), "does not read like English"),

@@ -81,7 +81,8 @@ def test_an_attempt_is_stopped(bait, name):
 def test_the_walls_hold_without_the_rules(bait, name):
     started = time.monotonic()
     ran = run_script(bait(RAW[name]), BRIEF if name in SLEEPS else TIGHT, unchecked=True)
-    assert not ran.xosc, "the script got hold of something"
+    assert not ran.xosc
+    assert ran.fault.kind != "Found", "the script got hold of something"
     assert "the-secret" not in f"{ran}"
     assert time.monotonic() - started < 25
 
@@ -121,6 +122,30 @@ def test_nobody_answers_in_the_sandboxs_place(name):
     assert not ran.xosc
     assert "forged" not in f"{ran}"
     assert ran.walls == run_script(EXAMPLE).walls, "a script said which walls stand"
+
+
+def test_a_scripts_process_holds_no_secret_and_no_channel_to_the_project():
+    """With every builtin at hand: the frames above it, and the descriptors that are open."""
+    walk = (
+        "import re, sys\nframe, seen = sys._getframe(), []\nwhile frame:\n"
+        "    seen += [frame.f_locals, frame.f_globals]\n    frame = frame.f_back\n"
+        "found = [k for m in seen for k, v in m.items() if re.search('secret|token', k)]\n"
+        "found += re.findall('[0-9a-f]{32}', str(seen))\nfound = found or ''"
+    )
+    assert run_script(walk, TIGHT, unchecked=True).fault.kind == "Nothing"
+    channels = (
+        "import os\nfound = []\nfor k in range(64):\n    try:\n        os.fstat(k)\n        found.append(k)\n"
+        "    except OSError:\n        pass"
+    )
+    assert run_script(channels, TIGHT, unchecked=True).fault.message == "[1, 2]", "its own pipe, and the error stream"
+
+
+def test_what_a_script_says_is_taken_as_a_scenario_or_as_nothing():
+    say = 'import json, os\nos.write(1, json.dumps({{"ok": True, "xosc": {!r}}}).encode())\nos._exit(0)'
+    own = "<?xml version='1.0'?>\n<OpenSCENARIO></OpenSCENARIO>"
+    assert run_script(say.format(own), TIGHT, unchecked=True).xosc == own
+    for other in ("the-secret", "<forged/>", "<?xml version='1.0'?><OpenSCENARIOS/>", ""):
+        assert run_script(say.format(other), TIGHT, unchecked=True).fault.kind == "ForgedAnswer"
 
 
 def test_an_honest_script_comes_back_as_a_scenario():
@@ -185,4 +210,5 @@ def test_without_a_namespace_nothing_runs_unless_it_is_allowed(no_namespaces):
 def test_without_a_namespace_the_other_walls_hold(no_namespaces, bait, name):
     if "calls" not in run_script(EXAMPLE, allow_without_namespace=True).walls:
         pytest.skip("no system call filter for this machine")
-    assert not run_script(bait(RAW[name]), TIGHT, allow_without_namespace=True, unchecked=True).xosc
+    ran = run_script(bait(RAW[name]), TIGHT, allow_without_namespace=True, unchecked=True)
+    assert ran.fault.kind != "Found"

@@ -72,7 +72,7 @@ def test_who_backs_may_face_along_its_way_or_go_along_it_tail_first(road: str, d
 @pytest.mark.parametrize("maneuver", ["turn_right", "straight", "stopped"])
 def test_another_maneuver_than_the_told_turn_is_asked_again(maneuver: str) -> None:
     (finding,) = _found(_changed(1, maneuver=maneuver))
-    assert (finding.severity, finding.value, finding.remedy) == ("repair", maneuver, "use turn_left")
+    assert (finding.severity, finding.value, finding.remedy) == ("question", maneuver, "use turn_left")
 
 
 def test_slowing_instead_of_stopped_is_no_contradiction() -> None:
@@ -84,7 +84,7 @@ def test_slowing_instead_of_stopped_is_no_contradiction() -> None:
 
 def test_sides_that_the_text_names_are_asked_again_and_the_striker_may_stand_in_either_role() -> None:
     (finding,) = _found(_contact(struck_area="left"))
-    assert (finding.severity, finding.where) == ("repair", "contacts[0]")
+    assert (finding.severity, finding.where) == ("question", "contacts[0]")
     assert finding.remedy == "declare striker V1, struck V2: front of V1, right of V2"
     swapped = _contact(striker="V2", struck="V1", striker_area="right", struck_area="front")
     assert _found(swapped) == []
@@ -143,7 +143,7 @@ def _held(actor: Actor, choice: Mapping[str, Sequence[Any]]) -> Iterator[Actor]:
 )
 def test_whatever_a_finding_holds_an_answer_to_passes(index: int, wrong: dict[str, str]) -> None:
     behavior = _changed(index, **wrong)
-    found = [f for f in _found(behavior) if f.severity == "repair"]
+    found = [f for f in _found(behavior) if f.severity == "question"]
     holds = [hold for f in found for hold in f.holds]
     assert found
     assert holds
@@ -165,7 +165,7 @@ def test_a_held_turn_leaves_by_a_road_on_that_side() -> None:
 def test_a_turn_that_leaves_by_the_road_of_another_is_asked_again(road: str, exit_road: str, leaves: str) -> None:
     text = TEXT.replace("V2 was traveling south and turned", "V2 turned")
     (finding,) = _found(_changed(1, road=road, exit_road=exit_road), text)
-    assert finding.severity == "repair"
+    assert finding.severity == "question"
     assert finding.what == f"V2 would leave {road} by {exit_road}, which is no turn_left"
     assert finding.remedy == f"leave by {leaves}"
     starts = {choice["road"][0]: choice["exit_road"] for choice in finding.holds[0].either}
@@ -243,7 +243,7 @@ CORNER = TEXT.replace("the right side of V2", "the right front of V2")
 
 
 @pytest.mark.parametrize(("side", "severity"), [
-    ("right", None), ("front", "doubt"), ("left", "repair"), ("back", "repair"),
+    ("right", None), ("front", "doubt"), ("left", "question"), ("back", "question"),
 ])  # fmt: skip
 def test_a_corner_may_be_either_of_its_sides_and_no_other(side: str, severity: str | None) -> None:
     found = [f for f in _found(_contact(struck_area=side), CORNER) if "sides" in f.what]

@@ -42,7 +42,7 @@ def findings(text: str, artifact: RoadNetwork, pictured: bool = False) -> list[F
 
 
 def repairs(text: str, *legs: Leg, pictured: bool = False) -> list[str]:
-    return [f.what for f in findings(text, network(*legs), pictured) if f.severity == "repair"]
+    return [f.what for f in findings(text, network(*legs), pictured) if f.severity == "question"]
 
 
 @pytest.mark.parametrize("pictured", [False, True])
@@ -131,7 +131,7 @@ def test_a_lane_number_beyond_the_road_is_found_and_held_where_no_diagram_counts
     text = "V1 was traveling north in lane three. V2 was traveling north behind V1 and struck the rear of V1."
     legs = (leg("N", 2, 2), leg("S", 2, 2))
     assert repairs(text, *legs, pictured=True) == []
-    (found,) = [f for f in findings(text, network(*legs)) if f.severity == "repair"]
+    (found,) = [f for f in findings(text, network(*legs)) if f.severity == "question"]
     assert "at least 3 lanes that head north" in found.what
     assert repairs(text, *held([found], *legs), leg("E", 1, 1)) == []
 
@@ -179,7 +179,7 @@ def test_a_two_way_road_drawn_in_one_direction_is_found_and_held() -> None:
     north = (leg("N", 0, 1), leg("S", 1, 0))
     assert repairs(MIXED, leg("E", 1, 1), leg("W", 1, 1), *north) == []
     wrong = (leg("E", 2, 0), leg("W", 0, 2), *north)
-    (found,) = [f for f in findings(MIXED, network(*wrong)) if f.severity == "repair"]
+    (found,) = [f for f in findings(MIXED, network(*wrong)) if f.severity == "question"]
     assert "east-west road is two-way" in found.what
     assert repairs(MIXED, *held([found], *wrong)) == []
     divided = MIXED.replace("a two-way road", "a divided, two-way road")
@@ -248,7 +248,7 @@ def test_a_t_beside_which_more_is_told_may_have_a_fourth_leg(also: str) -> None:
 def test_a_t_with_four_legs_is_held_to_three_unless_a_diagram_may_show_another() -> None:
     legs = tuple(leg(bearing, 1, 1) for bearing in "NESW")
     (found,) = [f for f in findings(FROM_THE_SIDE, network(*legs)) if "leg too many" in f.what]
-    assert (found.severity, found.holds[0].at_most) == ("repair", 3)
+    assert (found.severity, found.holds[0].at_most) == ("question", 3)
     held_to = narrowed_schema(ANSWER, found.holds)["anyOf"][0]["properties"]["legs"]
     assert (held_to["minItems"], held_to["maxItems"]) == (2, 3)
     assert all(f.severity == "note" for f in findings(FROM_THE_SIDE, network(*legs), pictured=True))
@@ -265,8 +265,8 @@ def test_a_wrong_limit_and_an_unnamed_junction_are_notes() -> None:
 def test_repairs_stand_before_notes() -> None:
     legs = (leg("N", 1, 1, 30), leg("S", 1, 1, 30), leg("E", 1, 1), leg("W", 1, 1))
     severities = [f.severity for f in findings(CROSSING, network(*legs))]
-    assert severities == sorted(severities, key=lambda s: s != "repair")
-    assert set(severities) == {"repair", "note"}
+    assert severities == sorted(severities, key=lambda s: s != "question")
+    assert set(severities) == {"question", "note"}
 
 
 def test_what_did_not_compile_or_says_nothing_is_passed_over() -> None:
@@ -274,7 +274,7 @@ def test_what_did_not_compile_or_says_nothing_is_passed_over() -> None:
     assert findings("", network(leg("N", 1, 1), leg("S", 1, 1))) == []
 
 
-@pytest.mark.parametrize(("bearings", "found"), [("EWN", []), ("EWS", ["doubt"]), ("NSW", ["repair"])])
+@pytest.mark.parametrize(("bearings", "found"), [("EWN", []), ("EWS", ["doubt"]), ("NSW", ["question"])])
 def test_a_leg_that_only_the_struck_side_tells_is_a_doubt(bearings: str, found: list[str]) -> None:
     text = (
         "V1 was traveling west on a road. V2 was making a left turn from the side road at a T-intersection. "
@@ -324,7 +324,7 @@ def held(found: list[Finding], *legs: Leg) -> list[Leg]:
 
 def test_lanes_that_a_finding_holds_are_those_of_the_text() -> None:
     legs = (leg("N", 1, 1, 45), leg("S", 1, 1, 45), leg("E", 1, 1), leg("W", 1, 1))
-    found = [f for f in findings(CROSSING, network(*legs)) if f.severity == "repair"]
+    found = [f for f in findings(CROSSING, network(*legs)) if f.severity == "question"]
     (hold,) = [hold for finding in found for hold in finding.holds]
     assert set(hold.values) == {"N", "S"}
     allowed = {n + out for choice in hold.either for n in choice["lanes_in"] for out in choice["lanes_out"]}
@@ -351,11 +351,11 @@ def test_a_direction_that_no_road_carries_is_held_on_both_legs() -> None:
 
 
 def test_a_missing_junction_gets_its_legs_where_the_told_paths_use_every_one() -> None:
-    (found,) = [f for f in findings(FROM_THE_SIDE, network(leg("E", 1, 1), leg("W", 1, 1))) if f.severity == "repair"]
+    (found,) = [f for f in findings(FROM_THE_SIDE, network(leg("E", 1, 1), leg("W", 1, 1))) if f.severity == "question"]
     told = {hold.at: hold.either[0]["bearing"] for hold in found.holds if hold.either}
     assert told == {0: ("N",), 1: ("E",), 2: ("W",)}
     guessed = FROM_THE_SIDE.replace("The side street joins it from the north. ", "")
-    (found,) = [f for f in findings(guessed, network(leg("E", 1, 1), leg("W", 1, 1))) if f.severity == "repair"]
+    (found,) = [f for f in findings(guessed, network(leg("E", 1, 1), leg("W", 1, 1))) if f.severity == "question"]
     assert [hold.at_least for hold in found.holds] == [3]
 
 
@@ -363,7 +363,7 @@ def test_a_roundabout_that_is_told_must_be_drawn() -> None:
     text = "V1 was northbound and entered a roundabout. V1 struck the rear of V2."
     legs = [leg(at, 1, 1) for at in ("N", "E", "S", "W")]
     missed = findings(text, network(*legs))[0]
-    assert (missed.severity, missed.value) == ("repair", "no roundabout")
+    assert (missed.severity, missed.value) == ("question", "no roundabout")
     spec = road_spec(RoadLayout(legs=tuple(legs), circle_lanes=1))
     drawn = findings(text, compile_network(plain_xml(spec), spec))
     assert not [found.what for found in drawn if found.severity != "note"]

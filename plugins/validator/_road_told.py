@@ -1,0 +1,40 @@
+"""The facts of a narrative on which a finding about its roads may rest. Knows facts by name; no network."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from plugins.validator._told import as_question
+from sgcad_core.case.records import Finding
+from sgcad_core.reading.layout.legs_used import turns_off
+from sgcad_core.reading.provenance.road_provenance import road_names
+from sgcad_core.reading.reading import Reading
+from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
+from sgcad_core.reading.text.compass import COMPASS, NAMES, turned
+from sgcad_core.records.specs import Compass
+
+Asked = tuple[Finding, tuple[str, ...]]
+"""A finding, and the facts that it may rest on, the likeliest first."""
+KIND = ("junction.kind",)
+
+
+def asked_of(found: Finding, fields: tuple[str, ...], reading: Reading) -> Finding:
+    """The finding as a question about what a sentence states; a doubt stays one."""
+    asked = as_question(found, reading, fields)
+    return found if found.severity == "doubt" else asked
+
+
+def used_by(legs: Sequence[Compass], facts: RoadFacts) -> tuple[str, ...]:
+    """The motion of the vehicles that come from these legs or turn into them."""
+    ways = [(v.id, v.heading) for v in facts.crash.vehicles if v.heading]
+    come = [f"vehicles.{name}.heading" for name, heading in ways if turned(heading, 180) in legs]
+    turning = [f"vehicles.{v.id}.{name}" for v in facts.crash.vehicles if turns_off(v)
+               for name in ("exit_heading", "maneuver", "heading")]  # fmt: skip
+    return (*come, *turning, "junction.stem", *KIND)
+
+
+def lane_fields(road: RoadFact, facts: RoadFacts, first: str) -> tuple[str, ...]:
+    """What may be told of a road's lanes, the named field first."""
+    name = next((n for n, r in zip(road_names(facts), facts.roads, strict=True) if r is road), "main")
+    ways = (f"lanes_{NAMES[way]}bound" for way in COMPASS)
+    return tuple(f"roads.{name}.{at}" for at in (first, "lanes_total", "lanes_each_way", "one_way", *ways))
