@@ -34,6 +34,7 @@ from sgcad_core.kinds import CrashRole
 from sgcad_core.near_names import did_you_mean
 from sgcad_core.records.second_reader import LEARNED
 from sgcad_core.registry import plugin_class
+from sgcad_core.system.yaml_faults import YAML_FAULTS
 
 SINGLE = ("report_reader", "retriever", "backbone", "decoder", "road_writer", "scenario_writer", "simulator", "tracker")
 SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings", "second_opinion")
@@ -270,5 +271,5 @@ def _override(raw: dict[str, Any], text: str) -> None:
             raise ConfigError(f"--set {text!r}: {parent!r} is no mapping")
     try:
         place[last] = yaml.safe_load(value)
-    except yaml.YAMLError as fault:
+    except YAML_FAULTS as fault:
         raise ConfigError(f"--set {text!r}: the value is no YAML: {fault}") from fault

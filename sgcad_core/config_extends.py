@@ -19,6 +19,7 @@ import yaml
 
 from sgcad_core.errors import ConfigError
 from sgcad_core.near_names import did_you_mean
+from sgcad_core.system.yaml_faults import YAML_FAULTS
 
 KEY = "extends"
 Merge = Callable[[Mapping[str, Any], Mapping[str, Any]], dict[str, Any]]
@@ -72,7 +73,7 @@ def mapping_of(file: Path, expected: str, where: str) -> dict[str, Any]:
     """The mapping in a file, as it stands there. Raises ConfigError that begins with `where`."""
     try:
         raw = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError, OSError) as fault:
+    except (*YAML_FAULTS, OSError) as fault:
         raise ConfigError(f"{where}: cannot be read as YAML: {fault}") from fault
     if not isinstance(raw, dict):
         raise ConfigError(f"{where}: expected a mapping {expected}, found {type(raw).__name__}")

@@ -4,10 +4,12 @@
     ├── ConfigError        edit the YAML or the command line          (exit 2, nothing started)
     ├── BadInput           this report cannot be read: mend the file  (the case fails, the batch goes on)
     ├── MissingTool        install what is named                      (exit 2, nothing started)
+    │   └── ServerSilent   a server gave no answer: tried again       (then as MissingTool)
     ├── InvalidOutput      the writer's output is wrong: ask again    (caught by the refinement loop)
     │   └── Unsupported    right, but more than our player plays      (named with its line, never left out silently)
     ├── WrongEdit          a person's fact cannot be taken: give another (result and facts.yaml stay as they were)
     ├── Refused            the evidence does not carry the crash      (a result, never retried)
+    ├── PluginFault        a plugin broke its interface: mend it      (the case fails at once, the batch goes on)
     └── SimulationFailed   the execution died: may be retried         (the case fails, the batch goes on)
         └── ProcessDied    killed or crashed, not late: once more     (a second death is the case's failure)
 
@@ -38,6 +40,10 @@ class BadInput(SgcadError):
 
 class MissingTool(SgcadError):
     """A program or package is not installed; the message says how to install it."""
+
+
+class ServerSilent(MissingTool):
+    """A server gave no answer, after the tries of the plugin that asked it; a step that met it may be repeated."""
 
 
 class InvalidOutput(SgcadError):
@@ -76,6 +82,10 @@ class Refused(SgcadError):
         super().__init__(reason)
         self.reason = reason
         self.missing = tuple(missing)
+
+
+class PluginFault(SgcadError):
+    """A plugin raised what its kind may not raise, or returned something else; the message names it and its place."""
 
 
 class SimulationFailed(SgcadError):

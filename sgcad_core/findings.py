@@ -11,7 +11,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from sgcad_core.record_base import Record
+from sgcad_core.record_base import Record, Value
 
 
 class Hold(Record):
@@ -42,14 +42,35 @@ class Hold(Record):
         return "; ".join(parts)
 
 
-Severity = Literal["repair", "refuse", "doubt", "note"]
+Severity = Literal["repair", "refuse", "question", "doubt", "note"]
+HARD: tuple[Severity, ...] = ("repair", "refuse")
+"""Faults with which nothing is written: files that do not load, a told contact that does not happen, the impossible."""
+SOFT: tuple[Severity, ...] = ("question", "doubt")
+"""What is asked about and then let pass."""
+
+
+class Told(Record):
+    """The stated fact that a question rests on, and its sentence as it was read.
+
+    [start, end): the sentence's characters in the narrative as it was written. `by`: who read it ("rules", "model",
+    "person").
+    """
+
+    field: str
+    value: Value
+    by: str
+    confidence: float
+    start: int
+    end: int
+    sentence: str = ""
 
 
 class Finding(Record):
     """What is wrong, written so that a model (or a person) can act on it.
 
-    severity repair: asked again; refuse: ends the stage as refused; doubt: asked again a few times, then let pass;
-    note: kept, nothing happens.
+    severity repair: asked again until it is mended; refuse: ends the stage as refused; question: what the report may
+    tell otherwise, asked once and then let pass; doubt: what is odd, asked once and then let pass; note: kept, nothing
+    happens.
     """
 
     source: str
@@ -60,6 +81,13 @@ class Finding(Record):
     remedy: str = ""
     holds: tuple[Hold, ...] = ()
     """The remedy as the next answer's schema can be held to it, where it is that exact."""
+    told: Told | None = None
+    """Of a question, the fact that the artifact differs from."""
+
+    @property
+    def subject(self) -> tuple[str, str, str]:
+        """What it is about: an answer that differs in nothing else is about the same."""
+        return self.source, self.where, self.told.field if self.told else self.what
 
     def line(self) -> str:
         """One line for prompts and logs."""
@@ -87,9 +115,10 @@ class FindingFactory:
         remedy: str = "",
         severity: Severity = "repair",
         holds: tuple[Hold, ...] = (),
+        told: Told | None = None,
     ) -> Finding:
         """A finding of this source."""
         return Finding(
             source=self.source, severity=severity, what=what,
-            where=where or self.where, value=str(value), remedy=remedy or self.remedy, holds=holds,
+            where=where or self.where, value=str(value), remedy=remedy or self.remedy, holds=holds, told=told,
         )  # fmt: skip

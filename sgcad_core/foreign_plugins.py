@@ -1,21 +1,20 @@
-"""Checks of third-party plugins: the interface of a class, the target of an entry point, and a fingerprint of the
-code for cache keys.
+"""Checks of third-party plugins: the interface of a class, and a fingerprint of the code for cache keys.
 
 Knows classes and files; imports nothing by itself.
 """
 
 from __future__ import annotations
 
-import ast
 import hashlib
-import importlib.util
 import sys
 from functools import cache
-from importlib.metadata import EntryPoint, PackageNotFoundError, packages_distributions, version
+from importlib.metadata import PackageNotFoundError, packages_distributions, version
 from pathlib import Path
 from typing import get_args, get_type_hints
 
 from pydantic import BaseModel
+
+from sgcad_core import entry_points
 
 OWN = frozenset({"sgcad_core", "plugins", "flows", "research"})
 """Packages whose code and versions are part of every cache key anyway."""
@@ -48,35 +47,6 @@ def _example(name: str, kind: type) -> str:
     )
 
 
-def names_a_class(point: EntryPoint) -> bool:
-    """Whether an entry point's module exists and names its class, as far as its source tells; imports no plugin."""
-    try:
-        spec = importlib.util.find_spec(point.module)
-    except (ImportError, ValueError, AttributeError):
-        return False
-    if spec is None:
-        return False
-    if not (spec.origin and spec.origin.endswith(".py")):
-        return True  # compiled: only importing it would tell
-    try:
-        tree = ast.parse(Path(spec.origin).read_text(encoding="utf-8"))
-    except (OSError, SyntaxError, ValueError):
-        return True  # it is there; importing it will tell what is wrong with it
-    return point.attr.split(".")[0] in _names(tree)
-
-
-def _names(tree: ast.Module) -> set[str]:
-    found: set[str] = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.ClassDef | ast.FunctionDef):
-            found.add(node.name)
-        elif isinstance(node, ast.Import | ast.ImportFrom):
-            found |= {alias.asname or alias.name for alias in node.names}
-        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-            found.add(node.id)
-    return found
-
-
 def code_fingerprint(plugin: type) -> str:
     """Distribution, version and digest of a third-party plugin class and its bases; empty for built-in ones."""
     tops = {base.__module__: None for base in plugin.__mro__ if not _is_ours(base.__module__)}
@@ -91,10 +61,10 @@ def _is_ours(module: str) -> bool:
 @cache
 def _about(module: str) -> str:
     top = module.split(".")[0]
-    names = packages_distributions().get(top, [])
     try:
+        names = packages_distributions().get(top, [])
         told = f"{names[0]} {version(names[0])}" if names else top
-    except PackageNotFoundError:
+    except (PackageNotFoundError, *entry_points.DAMAGED):
         told = top
     return f"{told} {_digest(module)}"
 

@@ -2,7 +2,7 @@
 
 A plugin is one frozen pydantic class in one file: its fields are its configuration, its method is its
 job, heavy state is a `functools.cached_property`. Register it under the entry-point group
-`sgcad.<kind>`; nothing else is needed. Signatures and docstrings only.
+`sgcad.<kind>`; nothing else is needed. Signatures and docstrings only; what a plugin does otherwise is a PluginFault.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict
 
+from sgcad_core import plugin_calls
 from sgcad_core.case.driver_io import Seat, Task
 from sgcad_core.case.records import (
     Context,
@@ -26,6 +27,7 @@ from sgcad_core.case.records import (
     Query,
     RoadNetwork,
     Scenario,
+    Severity,
 )
 from sgcad_core.case.tracker_arm import Arm
 
@@ -42,10 +44,22 @@ class Plugin(BaseModel, ABC):
     version: ClassVar[str] = "1"
     """Part of every cache key: raise it when the same inputs give another result."""
 
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Hold its methods to its kind's interface: raises PluginFault for what they do otherwise."""
+        interface = next(base for base in cls.__mro__[1:] if base.__module__ == __name__)
+        if cls.kind != "tracker":  # whose faults cost no case
+            plugin_calls.hold_to_interface(cls, interface)
+
     @property
     def stamp(self) -> str:
         """Fingerprint of what the plugin reads beside its fields, such as an index; part of every cache key."""
         return ""
+
+    @property
+    def prompts(self) -> tuple[str, ...]:
+        """Names of the files in configs/prompts/ that it asks a model with; trackers keep their texts."""
+        return ()
 
 
 class ReportReader(Plugin):
@@ -123,7 +137,9 @@ class RoadWriter(Plugin):
 
     kind = "road_writer"
     asks_model: ClassVar[bool]
-    """False: `ask` is never called, so no backbone is needed and findings cannot change the answer."""
+    """False: `ask` is never called, so no backbone is needed."""
+    mends: ClassVar[tuple[Severity, ...]] = ()
+    """Findings about which a writer that asks no model does something, so that a second attempt may be better."""
 
     @abstractmethod
     def write(
@@ -137,6 +153,7 @@ class ScenarioWriter(Plugin):
 
     kind = "scenario_writer"
     asks_model: ClassVar[bool]
+    mends: ClassVar[tuple[Severity, ...]] = ()
 
     @abstractmethod
     def write(
@@ -188,10 +205,10 @@ class Driver(Plugin):
 
 
 class Tracker(Plugin):
-    """Where results can be compared. Called from one thread, after the case is on disk.
+    """Where results can be compared. Called from one thread, after the case is on disk, maybe hours after.
 
-    `begin` and `end` enclose a batch; a batch that was killed is begun again, and its logged cases are not logged
-    again. A single `log_case` without them is fine.
+    What is logged of a case comes from its folder alone. `begin` and `end` enclose a batch; a batch that was killed is
+    begun again, and its logged cases are not logged again. A single `log_case` without them is fine.
     """
 
     kind = "tracker"
@@ -206,11 +223,7 @@ class Tracker(Plugin):
 
     @abstractmethod
     def log_case(self, config_name: str, params: dict[str, Any], case_dir: Path, result: dict[str, Any]) -> None:
-        """Log one finished case: parameters, metrics, attempts as steps, every file in case_dir."""
-
-    def log_generation(self, config_name: str, case: str, query: Query, generation: Generation) -> None:
-        """Log one model call; the default keeps nothing."""
-        return
+        """Log one finished case from its folder: parameters, metrics, attempts, steps, files."""
 
     def page(self, config_name: str, case: str) -> str:
         """Where a case that was logged here is to be seen: an address, or what comes after that of a server over the

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from pydantic import BaseModel, ConfigDict
 
+Value = str | int | float | bool | tuple[str, ...] | None
+"""What a fact, an edit or an answer may say of one field."""
+
 
 class Record(BaseModel):
     """Frozen, closed, compared by value."""

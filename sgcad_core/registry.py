@@ -1,4 +1,4 @@
-"""The plugin catalogue: entry points, read once, imported when named.
+"""The plugin classes: entry points, imported when named.
 
 Built-in and third-party plugins are found in the same way (`sgcad.<kind>` groups). Knows no plugin.
 """
@@ -7,16 +7,18 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
 from typing import TYPE_CHECKING
 
 from pydantic import PydanticUserError
 
 from sgcad_core import foreign_plugins, interfaces
+from sgcad_core.entry_points import catalogue, unreadable
 from sgcad_core.errors import ConfigError
 from sgcad_core.near_names import did_you_mean
 
 if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
     from sgcad_core.interfaces import Plugin
 
 BASES: dict[str, type[Plugin]] = {
@@ -27,13 +29,6 @@ BASES: dict[str, type[Plugin]] = {
         interfaces.Driver, interfaces.Tracker,
     )
 }  # fmt: skip
-KINDS: tuple[str, ...] = tuple(BASES)
-
-
-@cache
-def catalogue(kind: str) -> dict[str, EntryPoint]:
-    """Installed plugins of a kind by name; imports none of them."""
-    return {point.name: point for point in sorted(entry_points(group=f"sgcad.{kind}"), key=lambda p: p.name)}
 
 
 @cache
@@ -41,9 +36,8 @@ def plugin_class(kind: str, name: str) -> type[Plugin]:
     """Import one plugin. Raises ConfigError naming the nearest and all installed names."""
     known = catalogue(kind)
     if name not in known:
-        raise ConfigError(
-            f"unknown {kind} {name!r}.{did_you_mean(name, known)} Installed: {', '.join(known) or 'none'}"
-        )
+        told = f"unknown {kind} {name!r}.{did_you_mean(name, known)} Installed: {', '.join(known) or 'none'}"
+        raise ConfigError("; ".join([told, *unreadable()]))
     found, where = _imported(kind, name, known[name]), f"{kind} {name!r} ({known[name].value})"
     if not (isinstance(found, type) and issubclass(found, BASES[kind])):
         raise ConfigError(f"{where} is no {BASES[kind].__name__}: derive it from that class")
@@ -61,7 +55,7 @@ def _imported(kind: str, name: str, point: EntryPoint) -> object:
         raise ConfigError(f"{where} cannot be imported: {fault}") from fault
     except PydanticUserError as fault:
         raise ConfigError(f"{where} is no valid plugin class: {_plainly(fault)}") from fault
-    except Exception as fault:
+    except (Exception, SystemExit) as fault:
         raise ConfigError(f"{where} fails while it is imported: {type(fault).__name__}: {fault}") from fault
 
 
@@ -72,8 +66,3 @@ def _plainly(fault: PydanticUserError) -> str:
         field, value = named.groups()
         return f"the field {field!r} has no type: write `{field}: float = {value}`, or whatever type it has"
     return first
-
-
-def installed(kind: str) -> dict[str, EntryPoint]:
-    """Plugins of a kind whose module and class are there; imports none of them."""
-    return {name: point for name, point in catalogue(kind).items() if foreign_plugins.names_a_class(point)}

@@ -5,13 +5,17 @@ Pure functions on records; knows the .net.xml reader for counting roads. Writes 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
 from sgcad_core.account import Account, Note, account_of
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.notes import notes_of
+from sgcad_core.account.second_opinion import disagreements_of
 from sgcad_core.case.records import Execution, Fact, Generation, RoadNetwork, Scenario, StageOutcome
 from sgcad_core.execution.compare_executions import Judgement
 from sgcad_core.execution.contact import avoided, closest_approach, first_with, realised
@@ -21,6 +25,7 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.reading.inference.reading_limits import limit_notes
 from sgcad_core.reading.text.traced_text import redactions
 from sgcad_core.records.edits import by_person
+from sgcad_core.records.timeline import Act, as_settled
 from sgcad_core.roads.lane_graph import network_figures, segments
 
 if TYPE_CHECKING:
@@ -76,6 +81,7 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
     status, reason, missing = _end(record)
     judged = {"judge": record.judgement.summary()} if record.judgement else {}
     facts, notes = facts_of(record), case_notes(record)
+    account = case_account(record, status, facts, notes)
     return {
         "case": record.case,
         "config": record.config,
@@ -91,9 +97,11 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
         "grounding": _grounding(record.outcomes),
         "sentences": _sentences(record.reading),
         "redactions": redactions(record.places),
+        "timeline": [act.model_dump(mode="json") for act in _timeline(record.reading, facts)],
         "facts": [fact.model_dump(mode="json") for fact in facts],
         "seconds": seconds_of(record),
-        "account": case_account(record, status, facts, notes).summary(),
+        "account": account.summary(),
+        "disagreements": [one.model_dump(mode="json") for one in account.disagreements],
         "notes": [note.model_dump(mode="json") for note in notes],
     }
 
@@ -104,6 +112,11 @@ def _sentences(reading: Reading | None) -> list[dict[str, Any]]:
         return []
     told = reading.sentences
     return [{"start": s.start, "end": s.end, "role": s.role, "text": reading.text_of(s)} for s in told]
+
+
+def _timeline(reading: Reading | None, facts: Sequence[Fact]) -> tuple[Act, ...]:
+    """States and acts in the order of the crash, as they stand after a model's or a person's answer."""
+    return as_settled(reading.timeline, facts) if reading else ()
 
 
 def seconds_of(record: CaseRecord) -> dict[str, float]:
@@ -130,6 +143,8 @@ def _answer(record: CaseRecord, stage: str) -> Generation | None:
     return attempt.generation if attempt else None
 
 
+_ROLLED_RAD = math.radians(60.0)
+"""Roll from which a vehicle has left its wheels for good."""
 _GENERATED: tuple[Status, str, Sequence[str]] = ("generated", "", ())
 
 
@@ -149,9 +164,20 @@ def _end(record: CaseRecord) -> tuple[Status, str, Sequence[str]]:
     if record.scenario and record.scenario.near_crash:
         touched = record.execution.contact is not None
         return ("exhausted", "scenario: in a near crash somebody touches when it runs", ()) if touched else _GENERATED
+    if _stays_upright(record):
+        return "exhausted", "scenario: the vehicle that is told to roll over stays on its wheels when it runs", ()
     if _subject_untouched(record):
         return "exhausted", "scenario: nobody touches the report's subject when the scenario runs", ()
     return _GENERATED
+
+
+def _stays_upright(record: CaseRecord) -> bool:
+    """Whether a report without a contact tells that its vehicle rolls over, and it does not."""
+    told = record.reading.crash.untouched if record.reading else None
+    if told is None or told.kind != "rollover" or record.execution is None:
+        return False
+    mine = next((t for t in record.execution.trajectories if t.actor == told.vehicle), None)
+    return mine is None or mine.roll_rad is None or float(np.abs(mine.roll_rad).max()) < _ROLLED_RAD
 
 
 def _subject_untouched(record: CaseRecord) -> bool:
@@ -235,11 +261,15 @@ def _grounding(outcomes: Mapping[str, StageOutcome]) -> dict[str, float]:
 
 
 def case_account(record: CaseRecord, status: Status, facts: Sequence[Fact], notes: Sequence[Note]) -> Account:
-    """The account of a case; empty for a case that is not generated."""
+    """The account of a case; of one that is not generated only what its writers were asked about."""
     network, scenario, execution, reading = record.network, record.scenario, record.execution, record.reading
+    told = {stage: attempt for stage, outcome in record.outcomes.items() if (attempt := outcome.told_by)}
+    models = {attempt.stage for attempt in told.values() if attempt.generation}
+    asked = [one for a in told.values() for one in disagreements_of(a.findings, facts, models, a.stage)]
     if status != "generated" or not (network and network.net_xml and scenario and execution and reading):
-        return account_of(None, facts)
-    return account_of(ExecutedCase(reading, network, scenario, execution, record.drawn), facts, notes)
+        return account_of(None, facts, asked=asked)
+    made = ExecutedCase(reading, network, scenario, execution, record.drawn)
+    return account_of(made, facts, notes, asked, models)
 
 
 def case_notes(record: CaseRecord) -> list[Note]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from sgcad_core.account.actors import actor_items
 from sgcad_core.account.assumed import assumed_items
@@ -11,26 +11,39 @@ from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.motion import motion_items
 from sgcad_core.account.notes import Note
 from sgcad_core.account.places import place_items
-from sgcad_core.account.records import Account, Item, Verdict
+from sgcad_core.account.records import Account, Disagreement, Item
+from sgcad_core.account.second_opinion import weighed
 from sgcad_core.account.told_places import told_place_items
+from sgcad_core.account.unread_clauses import unread_clauses
 from sgcad_core.account.unread_text import unread_items
+from sgcad_core.account.verdict import ORDER, contradictions, guesses, odd_driving, places, sentence_of, verdict_of
+from sgcad_core.case.records import Stage
 from sgcad_core.records.facts import Fact
 
-NOTHING = Account(verdict="none")
+NOTHING = Account(verdict="none", sentence="there is no scenario")
 
 
-def account_of(made: ExecutedCase | None, facts: Iterable[Fact], notes: Iterable[Note] = ()) -> Account:
+def account_of(
+    made: ExecutedCase | None,
+    facts: Iterable[Fact],
+    notes: Sequence[Note] = (),
+    asked: Sequence[Disagreement] = (),
+    models: Collection[Stage] = (),
+) -> Account:
     """The account of a case: stated and present, stated and lacking, assumed. `made` None: nothing was executed.
 
-    `facts`: all facts, as read and as written; `notes`: those of the kind `limit` are stated things that were not read.
+    `facts`: all facts, as read and as written; `notes`: those of the kind `limit` are stated things that were not read;
+    `asked`: what the writers were asked about and kept; `models`: stages that a model wrote.
     """
     if made is None:
-        return NOTHING
-    told = [*_told(made), *_limits(notes)]
-    lacks = [item for item in told if item.kind == "lacks"]
-    has = [item for item in told if item.kind == "has"]
-    verdict: Verdict = "lacking" if lacks else "whole"
-    return Account(verdict=verdict, items=(*lacks, *has, *assumed_items(made, facts)))
+        return NOTHING.model_copy(update={"disagreements": tuple(asked)})
+    told, differing = weighed(made, [*_told(made), *_limits(notes)], asked, models)
+    told += [*odd_driving(made, notes), *places(made), *unread_clauses(made), *contradictions(made), *guesses(made)]
+    ranked = sorted(told, key=lambda item: ORDER.index(item.kind))
+    items = (*ranked, *assumed_items(made, facts))
+    verdict = verdict_of(items, differing)
+    said = sentence_of(verdict, items, differing)
+    return Account(verdict=verdict, sentence=said, items=items, disagreements=tuple(differing))
 
 
 def _told(made: ExecutedCase) -> Iterator[Item]:

@@ -71,7 +71,7 @@ def _called(made: ExecutedCase, name: str) -> str:
 def _before(made: ExecutedCase, first: ObservedContact) -> bool:
     """Whether this is a contact with an object that the report has before the first one of two vehicles."""
     early = {impact.actor for impact in made.reading.crash.impacts if impact.before}
-    return any({first.actor, first.other} & early and name[0] == "O" for name in (first.actor, first.other))
+    return any({first.actor, first.other} & early and name[0] not in "VT" for name in (first.actor, first.other))
 
 
 def _sides(made: ExecutedCase, number: int, contact: ContactFacts, times: list[float]) -> Iterator[Item]:

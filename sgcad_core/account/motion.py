@@ -18,13 +18,17 @@ from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP
 from sgcad_core.metrics.labels.course_label_match import vehicle_marks
 from sgcad_core.metrics.labels.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
 from sgcad_core.metrics.labels.observed_crash import VehicleMotion
+from sgcad_core.metrics.lane_places import lane_steps
 from sgcad_core.metrics.rest_error import attitude_of
+from sgcad_core.metrics.told_lanes import LANE_WORDS, TURN_LANES, ToldLane, position, told_lane
 from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
 from sgcad_core.records.facts import Fact, Value
 
 _HEADING_RAD = math.radians(45.0 + 22.5)
 """A heading is right within an eighth of the circle beside the compass word's own eighth, as the scorers have it."""
 _LIES = {"wheels": "wheels", "roof": "roof", "left": "left side", "right": "right side"}
+_STANDS_MPS = 1.0
+"""Below it a vehicle stands, as reports have it."""
 _SPIN_DEG = 60.0
 """Tolerance of a stated angle of spin: reports give quarter turns."""
 
@@ -47,12 +51,13 @@ def motion_items(made: ExecutedCase) -> Iterator[Item]:
         parts = fact.field.split(".", 2)
         if parts[0] != "vehicles" or len(parts) < 3 or parts[1] not in made.tracks or not is_stated(fact):
             continue
-        seen = _judged(made, parts[1], parts[2], fact)
+        seen = judged(made, parts[1], parts[2], fact)
         if seen is not None:
             yield made.item(seen.has, fact.field, fact.value, seen.instead, why=seen.why)
 
 
-def _judged(made: ExecutedCase, who: str, name: str, fact: Fact) -> Comparison | None:
+def judged(made: ExecutedCase, who: str, name: str, fact: Fact) -> Comparison | None:
+    """A vehicle's fact of motion compared with the execution; None: nothing to compare with."""
     if name in _JUDGES:
         return _JUDGES[name](made, who, fact.value)
     if name not in _LABELS:
@@ -99,17 +104,21 @@ def _heading(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
 
 
 def _lane(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
-    """A numbered lane, or one by its side; a turn lane is the outermost one of its side."""
-    side = str(value).removesuffix("_turn") if isinstance(value, str) else value
-    if side not in ("left", "right", "middle") and not isinstance(side, int):
+    """A numbered lane (1 = at the right curb, -1 = the leftmost), one by its side, or a turn lane."""
+    vehicle = made.reading.crash.vehicle(who)
+    side = told.side if vehicle and (told := told_lane(vehicle)) else 0
+    told = ToldLane(value, None, side) if isinstance(value, int) else ToldLane(None, str(value), side)
+    if told.number is None and told.word not in LANE_WORDS:
         return None
-    marks = _marks(made, who, VehicleLabel(lane=side))
-    one = VehicleMotion(made.crash, who)
-    if not marks or one.home is None:
-        return None
-    edge, lane = one.home
-    place = next(i for i, other in enumerate(edge.car_lanes) if other.index == lane.index) + 1
-    return Comparison(all(m >= 1 for m in marks.values()), place, f"it starts in lane {place} of {len(edge.car_lanes)}")
+    steps = lane_steps(made.graph, VehicleMotion(made.crash, who).before)
+    first = next((k for k, name in enumerate(steps.lanes) if name), None)
+    if first is None and told.word in TURN_LANES:
+        return None  # it stands in its turn, in the junction
+    at = position(made.graph, steps.lanes[first]) if first is not None else None
+    seen = f"it starts in lane {at.place} of {at.lanes}" if at else "it starts in no lane of its direction"
+    if first is not None and steps.places[first] == "center_lane":
+        seen = "it starts in the center turn lane"
+    return Comparison(told.taken(made.graph, steps), at.place if at else None, seen)
 
 
 def _spin_deg(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
@@ -132,6 +141,15 @@ def _side(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
 def _attitude(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     seen = attitude_of(float(made.tracks[who].rolls[-1]))
     return Comparison(seen == value, seen, f"it comes to rest on its {_LIES[seen]}")
+
+
+def _from_rest(made: ExecutedCase, who: str, value: Value) -> Comparison:
+    """Whether a vehicle stands before its first contact and then moves on into it."""
+    one = VehicleMotion(made.crash, who)
+    speed = made.tracks[who].speed_mps[: one.hit + 1]
+    slowest = float(speed.min())
+    starts = slowest < _STANDS_MPS and float(speed[-2:].max()) > _STANDS_MPS
+    return Comparison(starts, round(slowest, 1), f"it never drives slower than {slowest:.1f} m/s before its contact")
 
 
 def _rolls(made: ExecutedCase, who: str, value: Value) -> Comparison:
@@ -172,5 +190,6 @@ def _exit(made: ExecutedCase, who: str) -> str | None:
 
 _JUDGES: dict[str, Judge] = {
     "heading": _heading, "lane": _lane, "lane_word": _lane, "spin_deg": _spin_deg, "rest.side": _side,
-    "rest.attitude": _attitude, "rolls": _rolls, "origin": _joins(_start), "target": _joins(_exit),
+    "rest.attitude": _attitude, "from_stop": _from_rest, "rolls": _rolls, "origin": _joins(_start),
+    "target": _joins(_exit),
 }  # fmt: skip

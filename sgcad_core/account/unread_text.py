@@ -16,7 +16,6 @@ from sgcad_core.reading.text.normalise import NUMBERS, Sentence
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES, is_impact
 from sgcad_core.roads.compiled_facts import junctions
 
-_VEHICLE = rule("common.vehicle")
 _CALLED, _COUNTED, _FURTHER, _ANIMAL, _MANY_LEGS, _INTRODUCED = (
     rule("account.called"), rule("account.counted"), rule("account.further"), rule("account.animal"),
     rule("account.many_legs"), rule("account.introduced"),
@@ -60,15 +59,10 @@ def _lacks(sentence: Sentence, what: str, value: str, text: str, reason: str) ->
 
 
 # ------------------------------------------------------------------ actors
-def _named(made: ExecutedCase, sentence: Sentence) -> set[str]:
-    """Ids of the vehicles that a sentence names."""
-    return {made.reading.actor(m[0]) for m in _VEHICLE.finditer(sentence.text)}
-
-
 def _numbers(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     """Numbered vehicles that were not read, and counts above the number of vehicles in the scenario."""
     known = {v.id for v in made.reading.crash.vehicles} | set(made.tracks)
-    for name in sorted(_named(made, sentence) - known):
+    for name in sorted(made.reading.named_in(sentence) - known):
         who = next((f"{m['words']!r}" for m in _INTRODUCED.finditer(sentence.text) if m["id"] == name), name)
         yield _lacks(sentence, "vehicle", name, f"{who} is named", "it is not in the scenario")
     for match in _COUNTED.finditer(sentence.text):
@@ -129,7 +123,7 @@ def _contact(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     """Two vehicles in a sentence about a contact, without a contact in the reading."""
     if sentence.role != "impact" or made.reading.crash.near_crash:
         return
-    names = _named(made, sentence)
+    names = made.reading.named_in(sentence)
     crash = made.reading.crash
     pairs = [{c.striker, c.struck} for c in crash.contacts if c.stated] + [{i.actor, i.other} for i in crash.impacts]
     carried = any(f.start == sentence.start and f.field.startswith(("contacts", "impacts")) for f in made.reading.facts)
@@ -140,7 +134,7 @@ def _contact(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
 
 def _deeds(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     """A turn, lane change or the like before the first contact that no named vehicle makes or intends."""
-    names = _named(made, sentence)
+    names = made.reading.named_in(sentence)
     vehicles = [v for v in made.reading.crash.vehicles if v.id in names]
     if not vehicles or sentence.start > _first_told(made):
         return

@@ -1,8 +1,9 @@
 """The one refinement loop: write, judge, ask again with the findings; every attempt is kept.
 
-Knows records, errors and validators; no format, no model, no Prefect. Refinement is not retry: each
-attempt sees what was wrong with the last. A writer that asks no model gives the same answer twice, so it
-gets one attempt, and repair findings on it end the stage as exhausted.
+Knows records, errors and validators; no format, no model, no Prefect. Refinement is not retry: each attempt sees what
+was wrong with the last. Hard findings are asked about until they are mended or ten attempts are made. Questions and
+doubts are put once: an answer that stands by its value settles them. A writer that asks no model gives the same answer
+twice, so it gets one attempt, and a second one if it mends what was found.
 """
 
 from __future__ import annotations
@@ -23,18 +24,22 @@ from sgcad_core.case.records import (
     Query,
     RoadNetwork,
     Scenario,
+    Severity,
     Stage,
     StageOutcome,
 )
 from sgcad_core.errors import InvalidOutput, Refused
+from sgcad_core.findings import SOFT
 from sgcad_core.interfaces import Ask, Validator
 
 MAX_ATTEMPTS = 10
 """Most attempts of a stage; configs may set fewer."""
 DOUBTFUL_ATTEMPTS = 3
-"""Attempts from the first usable artifact on; the one with the fewest doubts is taken."""
+"""Most attempts from the first usable artifact on; the one with the fewest questions and doubts is taken."""
+MENDING_ATTEMPTS = 2
+"""Attempts of a writer that asks no model and mends what was found."""
 
-_ASKING = ("repair", "doubt")
+_ASKING = ("repair", *SOFT)
 """Severities of findings that start another attempt."""
 
 Artifact = RoadNetwork | Scenario
@@ -59,29 +64,20 @@ class Turn:
     refused: Refused | None = None
     calls: tuple[Call, ...] = ()
 
-    @property
-    def repairs(self) -> int:
-        """Number of findings that send the writer back."""
-        return sum(f.severity == "repair" for f in self.attempt.findings)
-
-    @property
-    def doubts(self) -> int:
-        """Number of findings that a further attempt may do without."""
-        return sum(f.severity == "doubt" for f in self.attempt.findings)
+    def count(self, severity: Severity) -> int:
+        """Number of findings of a severity."""
+        return sum(f.severity == severity for f in self.attempt.findings)
 
     @property
     def usable(self) -> bool:
         """Whether nothing has to be repaired."""
-        return self.artifact is not None and self.refused is None and not self.repairs
+        return self.artifact is not None and self.refused is None and not self.count("repair")
 
     @property
-    def final(self) -> bool:
-        """Whether the stage ends with it, however many attempts are left."""
-        return self.refused is not None or (self.usable and not self.doubts)
-
-
-OnAttempt = Callable[[str, Callable[[], Turn]], Turn]
-"""Runs one attempt, named such as "road[2]": a flow makes it a task run of its own."""
+    def rank(self) -> tuple[bool | int, ...]:
+        """The less the better: usable ones first, then those with the fewest faults, questions and doubts."""
+        faults = self.count("repair"), self.count("question"), self.count("doubt")
+        return not self.usable, self.artifact is None, *faults
 
 
 @dataclass
@@ -113,11 +109,6 @@ def no_model(context: Context, query: Query) -> Generation:
     raise TypeError("a writer with asks_model = False asked a model; set asks_model = True and name a backbone")
 
 
-def run_at_once(name: str, turn: Callable[[], Turn]) -> Turn:
-    """The plain `OnAttempt`."""
-    return turn()
-
-
 @dataclass(frozen=True)
 class Refinement:
     """The parts of one stage's refinement: writer, validators, limits.
@@ -132,17 +123,19 @@ class Refinement:
     evidence_of: Callable[[Generation | None], Evidence]
     ask: Ask | None = None
     max_attempts: int = MAX_ATTEMPTS
-    on_attempt: OnAttempt = run_at_once
     case: str = ""
     show_findings: bool = True
     """False: a model too small to read them is asked the same again, and draws anew."""
     hold_findings: bool = False
     """What findings tell exactly, the schema of every later answer of the stage is narrowed to."""
+    mends: tuple[Severity, ...] = ()
+    """What a writer that asks no model does something about."""
 
     def run(self) -> tuple[StageOutcome, tuple[Call, ...]]:
         """Refine until written, refused or exhausted; also every model call, in order.
 
-        Of usable attempts the least doubtful is written, though a later one asked for repair or refused. An exhausted
+        Of usable attempts the one with the fewest questions and doubts is written, though a later one asked for repair
+        or refused. An exhausted
         stage's artifact is that of the attempt with the fewest repair findings (the first of equals), None if there is
         none. Raises MissingTool from a validator.
         """
@@ -152,34 +145,44 @@ class Refinement:
     @property
     def limit(self) -> int:
         """The most attempts that this stage may take."""
-        return min(self.max_attempts, MAX_ATTEMPTS) if self.ask else 1
+        return min(self.max_attempts, MAX_ATTEMPTS if self.ask else MENDING_ATTEMPTS if self.mends else 1)
 
     def ended(self, turns: Sequence[Turn]) -> bool:
         """Whether nothing comes after these turns."""
-        if not turns or len(turns) >= self.limit or turns[-1].final:
+        if not turns or len(turns) >= self.limit or turns[-1].refused:
             return bool(turns)
         since = next((len(turns) - i for i, turn in enumerate(turns) if turn.usable), 0)
-        return since >= DOUBTFUL_ATTEMPTS or not self._helped(turns[-1])
+        return since >= DOUBTFUL_ATTEMPTS or (turns[-1].usable and not self._open(turns))
 
-    def _helped(self, turn: Turn) -> bool:
-        """Whether the doubts change the next attempt: they are shown to the model, or narrow its schema."""
-        doubts = [f for f in turn.attempt.findings if f.severity == "doubt"]
-        return not turn.usable or self.show_findings or (self.hold_findings and any(f.holds for f in doubts))
+    def _open(self, turns: Sequence[Turn]) -> bool:
+        """Whether the last attempt leaves something soft that another one would hear of.
+
+        A model that reads findings is asked once about each; one that does not, draws anew while questions are left,
+        or doubts that narrow its schema.
+        """
+        soft = [f for f in turns[-1].attempt.findings if f.severity in SOFT]
+        if not self.ask:
+            return any(f.severity in self.mends for f in soft)
+        if self.show_findings:
+            put = {f.subject for turn in turns[:-1] for f in turn.attempt.findings}
+            return any(f.subject not in put for f in soft)
+        return any(f.severity == "question" or (self.hold_findings and f.holds) for f in soft)
 
     def turns(self, earlier: Sequence[Turn] = ()) -> list[Turn]:
         """All turns to the stage's end, going on from earlier ones of the same stage. Raises MissingTool."""
         turns = list(earlier)
         while not self.ended(turns):
-            turns.append(self._next(turns))
+            turns.append(self.next_turn(turns))
         return turns
 
-    def _next(self, turns: Sequence[Turn]) -> Turn:
+    def next_turn(self, turns: Sequence[Turn]) -> Turn:
+        """The attempt after these; call it while the stage has not `ended`. Raises MissingTool."""
         number = len(turns) + 1
         last = turns[-1].attempt if turns else None
         findings = tuple(f for f in last.findings if f.severity in _ASKING) if last else ()
         repair = repair_text(last.answer, findings) if last and findings and self.show_findings else ""
         holds = _holds(turns) if self.hold_findings else ()
-        return self.on_attempt(f"{self.stage}[{number}]", lambda: self._turn(findings, number, repair, holds))
+        return self._turn(findings, number, repair, holds)
 
     def _turn(self, findings: tuple[Finding, ...], number: int, repair: str, holds: tuple[Hold, ...]) -> Turn:
         started = time.perf_counter()
@@ -230,10 +233,9 @@ def refine(
     *,
     ask: Ask | None = None,
     max_attempts: int = MAX_ATTEMPTS,
-    on_attempt: OnAttempt = run_at_once,
 ) -> StageOutcome:
     """Refine one stage; `Refinement.run` without the calls."""
-    return Refinement(stage, write, validators, evidence_of, ask, max_attempts, on_attempt).run()[0]
+    return Refinement(stage, write, validators, evidence_of, ask, max_attempts).run()[0]
 
 
 def prompt_text(query: Query) -> str:
@@ -251,7 +253,7 @@ def _holds(turns: Sequence[Turn]) -> tuple[Hold, ...]:
     """What all findings tell exactly, each once, newest first: of two that exclude each other the first is kept."""
     found: list[Hold] = []
     for turn in reversed(turns):
-        heard = _ASKING if turn.usable else ("repair",)  # a doubt may come of what is to be repaired
+        heard = _ASKING if turn.usable else ("repair", "question")  # a doubt may come of what is to be repaired
         told = (hold for f in turn.attempt.findings if f.severity in heard for hold in f.holds)
         found += [hold for hold in told if hold not in found]
     return tuple(found)
@@ -276,7 +278,7 @@ def _faults(stage: Stage, fault: InvalidOutput) -> tuple[Finding, ...]:
 def outcome_of(stage: Stage, turns: Sequence[Turn]) -> StageOutcome:
     """How a stage with these turns ended."""
     attempts = tuple(turn.attempt for turn in turns)
-    best = min(turns, key=lambda turn: (not turn.usable, turn.artifact is None, turn.repairs, turn.doubts))
+    best = min(turns, key=lambda turn: turn.rank)
     if best.usable:
         return StageOutcome(
             stage=stage, status="written", artifact=best.artifact, attempts=attempts, kept=best.attempt.number

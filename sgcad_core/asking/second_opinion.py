@@ -18,14 +18,19 @@ from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import Context, CrashReport, Query, Token
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
 from sgcad_core.interfaces import Ask
-from sgcad_core.reading.second_reader import learned_reader
+from sgcad_core.reading.second_reader import learned_reader, numbered_reader
+from sgcad_core.reading.second_reader.combiner import FILLS
 from sgcad_core.reading.second_reader.field_claims import KINDS, UNKNOWN_P
-from sgcad_core.reading.second_reader.fuse_gist import FILLS
 from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, Gist
-from sgcad_core.records.second_reader import DRAWN, WHOLE, Answered, Heard, Opinion, Weights
+from sgcad_core.records.second_reader import DRAWN, HEARD, LEARNED, WHOLE, Answered, Heard, Opinion, Weights
 from sgcad_core.records.specs import BehaviorSpec, RoadLayout
 from sgcad_core.roads.describe import road_ids
 from sgcad_core.roads.layout import road_spec
+
+
+def opinion_prompts(second_opinion: str) -> tuple[str, ...]:
+    """Names of the prompts of a config's `second_opinion`."""
+    return {"": (), LEARNED: (), WHOLE: ("mini_road", "mini_scenario")}.get(second_opinion, (second_opinion,))
 
 
 def with_gist_opinion(report: CrashReport, prompt: str, ask: Ask) -> CrashReport:
@@ -50,17 +55,20 @@ def with_learned_opinion(report: CrashReport) -> CrashReport:
 
 
 def with_model_opinion(report: CrashReport, ask: Ask) -> CrashReport:
-    """The report with the model's answers to all of it; without an opinion where the model has no answer, and where
-    no vehicle is numbered. Raises ConfigError for weights that are missing."""
+    """The report with the learned reader's guesses and the model's answers to all of it, where it has some; without an
+    opinion where no vehicle is numbered. Raises ConfigError for weights that are missing."""
     if report.reading.crash.unnumbered:
         return report
-    weights = load_weights(DRAWN if report.diagrams else WHOLE, KINDS)
+    guesses = numbered_reader.guesses(report.narrative)
+    weights = load_weights(DRAWN if report.diagrams else HEARD if guesses else WHOLE, KINDS)
+    learned = Opinion(weights=weights, guesses=guesses, takes=FILLS)
     context = Context(narrative=report.narrative, diagrams=report.diagrams)
     try:
         answered = _answered(context, report.case, ask)
     except (Refused, InvalidOutput) as fault:
-        return report.model_copy(update={"notes": (*report.notes, f"no second opinion: {fault}")})
-    return report.model_copy(update={"opinion": Opinion(weights=weights, answered=answered, takes=FILLS)})
+        notes = (*report.notes, f"no second opinion: {fault}")
+        return report.model_copy(update={"notes": notes, "opinion": learned})
+    return report.model_copy(update={"opinion": learned.model_copy(update={"answered": answered})})
 
 
 def _answered(context: Context, case: str, ask: Ask) -> Answered:
@@ -85,8 +93,10 @@ def _answered(context: Context, case: str, ask: Ask) -> Answered:
 def load_weights(prompt: str, fields: Sequence[str] = FIELDS) -> Mapping[str, Weights]:
     """configs/prompts/<prompt>.json: field -> its weights. Raises ConfigError with what to mend."""
     file = settings.PROMPTS / f"{prompt}.json"
-    outside, pool = "research.benchmarks.texts.outside --drawings", "research.benchmarks.texts.fuse_weights POOL.jsonl"
-    remedy = f"fit them with `python -m {outside if prompt in (WHOLE, DRAWN) else pool} --fit ...`"
+    outside = "research.benchmarks.texts.outside --drawings"
+    coded = "research.benchmarks.texts.coded_fusion POOL.jsonl --answers FILE"
+    pool = "research.benchmarks.texts.fuse_weights POOL.jsonl"
+    remedy = f"fit them with `python -m {({WHOLE: outside, DRAWN: outside, HEARD: coded}).get(prompt, pool)} --fit ...`"
     if not file.is_file():
         raise ConfigError(f"second_opinion {prompt!r}: its file of weights {file} is missing; {remedy}")
     try:

@@ -71,11 +71,13 @@ class CrashReport(NarrativeRecord):
             with_edits,
         )
         from sgcad_core.reading.second_reader.fuse_gist import fused_with_gist
+        from sgcad_core.reading.second_reader.fuse_numbered import fused_with_guesses
         from sgcad_core.reading.second_reader.fuse_whole import fused_with_answer
         from sgcad_core.reading.text.traced_text import placed
 
         found = read(placed(self.narrative, self.places))
         if self.opinion:
+            found = fused_with_guesses(found, self.opinion.guesses)
             found = (
                 fused_with_answer(found, self.opinion)
                 if self.opinion.answered

@@ -32,6 +32,10 @@ class Arm(Record):
     dataset: Dataset
     plugins: Mapping[str, str]
     """By kind (validators by name): class, version and, where the plugin has one, stamp."""
+    prompts: Mapping[str, str] = Field(default_factory=dict, repr=False)
+    """Texts of the files in configs/prompts/ that a model is asked with, by name; empty without a model."""
+    live: bool = True
+    """Whether the cases run while they are logged; false where they are logged later, from their folders."""
     git_commit: str = ""
     hardware: Mapping[str, Any] = Field(default_factory=dict)
     fault: str = ""

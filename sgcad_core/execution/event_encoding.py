@@ -17,7 +17,8 @@ from sgcad_core.execution.contact import first_contact
 from sgcad_core.formats.opendrive.signals import Controller
 from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.formats.openscenario.writing.events import EventOptions, Fallbacks
-from sgcad_core.formats.openscenario.writing.writer import Version, write_xosc
+from sgcad_core.formats.openscenario.writing.versions import Version
+from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.records.specs import BehaviorSpec
 
 ASTRAY_M = 0.3

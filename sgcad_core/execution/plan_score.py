@@ -16,7 +16,9 @@ import numpy as np
 from sgcad_core.case.records import Scenario, Trajectory
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.execution.contact import first_contact, realised
+from sgcad_core.execution.scenario import actor_infos
 from sgcad_core.metrics.drivability import driving_peaks, first_touches
+from sgcad_core.metrics.untold_places import untold_places
 from sgcad_core.planner import plan
 from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.maneuver_visible import TURNED_RAD
@@ -27,7 +29,7 @@ from sgcad_core.roads.lane_graph import LaneGraph
 
 ODD_FROM = 0.5
 """Oddity (`Plan.oddity`) from which a contact is doubted, as the validator `meeting` has it."""
-_UNMET, _OVER = 10.0, 1.0
+_UNMET, _OVER, _OUT = 10.0, 1.0, 1.0
 _AWRY_RAD: dict[Maneuver, float] = {
     **dict.fromkeys(("straight", "slowing"), math.radians(30)),
     **dict.fromkeys(("lane_change_left", "lane_change_right", "merge", "overtaking"), math.radians(45)),
@@ -96,9 +98,12 @@ def least_doubted(
     Statements of the text give way only where the declared contact does not come about at all: on the development
     reports the other side of a corner and other headings resolved three doubts of seven, and each time the codes agreed
     with the first reading. Readings that would resolve a doubt are still noted. In a report without numbered actors the
-    other side of a corner is also used where the first one hides a stated maneuver: the words fit both.
+    other side of a corner is also used where the first one hides a stated maneuver, in any report where the first one
+    takes driving out of the lanes: the words fit both.
     """
     most = doubt(first.behavior, first.planned, first.oddity) if first.behavior else 0.0
+    out = _out_of_lanes(first.behavior, first.planned, facts, graph) if first.behavior else 0
+    most += _OUT * out
     if most <= 0.0:
         return LeastDoubted(facts, "", ())
     hidden = first.behavior is not None and _hides(first.behavior, first.planned)
@@ -109,7 +114,7 @@ def least_doubted(
         if left is None:
             continue
         tried.append(TriedReading(other.words, left))
-        gives_way = other.open or most >= _UNMET or (other.corner and hidden)
+        gives_way = other.open or most >= _UNMET or (other.corner and hidden) or (other.either and out > 0)
         if gives_way and left < ODD_FROM and left + other.price < best[0]:
             best = (left + other.price, other.facts, other.words)
         if left <= 0.0 and gives_way:
@@ -160,4 +165,10 @@ def _left(
         planned = plan(behavior, graph, by_force=by_force)
     except (InvalidOutput, Refused):
         return None
-    return doubt(behavior, planned.trajectories, planned.oddity)
+    out = _out_of_lanes(behavior, planned.trajectories, other.facts, graph)
+    return doubt(behavior, planned.trajectories, planned.oddity) + _OUT * out
+
+
+def _out_of_lanes(behavior: BehaviorSpec, motions: Sequence[Trajectory], facts: CrashFacts, graph: LaneGraph) -> int:
+    """Vehicles that drive out of the lanes of their direction and are not told to, as the validator `places` has it."""
+    return sum(1 for _ in untold_places(graph, motions, actor_infos(behavior), facts))

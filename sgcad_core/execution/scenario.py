@@ -6,18 +6,9 @@ from collections.abc import Mapping
 
 from sgcad_core.case.records import ActorInfo, Finding, Hold, RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.execution.event_encoding import write_editable
 from sgcad_core.execution.signals import signal_times
 from sgcad_core.findings import FindingFactory
-from sgcad_core.formats.openscenario.writing.events import EventOptions
-from sgcad_core.formats.openscenario.writing.writer import (
-    DEFAULT_ENCODING,
-    DEFAULT_VERSION,
-    Encoding,
-    Version,
-    origin_motion,
-    write_xosc,
-)
+from sgcad_core.formats.openscenario.writing.versions import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.planner import plan
 from sgcad_core.records.course import NOTHING_TOLD, Courses
@@ -45,6 +36,11 @@ def compile_scenario(
     report states a loss of control. `courses`: stated evasion and rest by vehicle. `signals`: the stated signal state
     by vehicle id.
     """
+    # the library that writes takes half a second to import, which a config's check need not wait for
+    from sgcad_core.execution.event_encoding import write_editable
+    from sgcad_core.formats.openscenario.writing.events import EventOptions
+    from sgcad_core.formats.openscenario.writing.writer import origin_motion, write_xosc
+
     _check_ids(behavior)
     if network.net_xml is None:
         raise InvalidOutput("the road network has no net.xml: compile it before planning on it")

@@ -128,9 +128,9 @@ def _lane_at(track: Trajectory, actor: Actor, graph: LaneGraph) -> int | None:
     """The lane of its start road that an actor's first place is nearest to, from the right curb."""
     at = np.array([[track.x_m[0], track.y_m[0]]])
     lanes = [
-        (float(distance_to(lane.shape, at)[0]), lane.index + 1)
+        (float(distance_to(lane.shape, at)[0]), place)
         for edge in graph.edges.values() if road_of(edge.id)[0] == actor.road
-        for lane in edge.lanes
+        for place, lane in enumerate(edge.laid_lanes, 1)
         if road_of(edge.id)[1] == actor.direction
     ]  # fmt: skip
     return min(lanes)[1] if lanes else None

@@ -16,6 +16,8 @@ from sgcad_core.metrics.drivability import REAR_AXLE
 WHEELBASE = 2 * REAR_AXLE
 """As a share of the length: the axles lie symmetrically."""
 FASTEST_MPS = 70.0
+MOST_STEERING_RAD = 0.7
+"""Of the front wheels: 40 degrees, at which a car of 2.8 m of wheelbase turns within 3.4 m, tighter than any."""
 
 
 @dataclass
@@ -73,7 +75,7 @@ class Ego:
         base, sign = WHEELBASE * length_m, -1.0 if self.backing else 1.0
         left = math.sqrt(max(friction_mps2**2 - taken**2, 0.0))
         tightest = left / max(self.speed_mps, 1.0) ** 2
-        bend = math.tan(min(max(steering or 0.0, -0.7), 0.7)) / base
+        bend = math.tan(min(max(steering or 0.0, -MOST_STEERING_RAD), MOST_STEERING_RAD)) / base
         bend = min(max(bend, -tightest), tightest)
         behind = REAR_AXLE * length_m
         x, y = self.x_m - behind * math.cos(self.heading_rad), self.y_m - behind * math.sin(self.heading_rad)

@@ -6,20 +6,23 @@ It ends when the ego has touched another actor, or some time after the conflict.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from sgcad_core.case.driver_io import STEP_S, Command, RoadUser, Seat, Task, View, Way
 from sgcad_core.case.records import ObservedContact, Trajectory
+from sgcad_core.errors import SimulationFailed
 from sgcad_core.execution.contact import first_contact, first_with
 from sgcad_core.geometry.plane import Floats, box_gaps
 from sgcad_core.handover.bicycle import Ego
+from sgcad_core.handover.reach import Reach
 from sgcad_core.handover.relative_clock import RELEASE_S, Clock
 from sgcad_core.handover.right_of_way import give_way_station, limit_mps
 from sgcad_core.handover.script import Staging
 from sgcad_core.interfaces import Driver
+from sgcad_core.plugin_calls import fault_of, held
 
 AFTER_S = 5.0
 """Time of the others' clock after the scripted contact at which a drive ends."""
@@ -54,15 +57,26 @@ class Drive:
 def drive(staging: Staging, driver: Driver, *, release_s: float = RELEASE_S, factor: float = 1.0) -> Drive:
     """Hands the ego to a driver. `factor`: the speed at the hand-over, over the scripted one.
 
-    Raises SimulationFailed where the driver is gone.
+    Raises SimulationFailed where the driver is gone, or asks for what the ego cannot do, which is no crash avoided;
+    PluginFault where it raises something else.
     """
     seat = driver.take_over(task_of(staging))
     try:
-        run = _Run(staging, seat, release_s, factor)
+        run = _Run(staging, lambda view: _asked(driver, seat, view), release_s, factor)
         run.go()
         return run.drive()
     finally:
-        seat.leave()
+        with held(driver, "its seat's leave"):
+            seat.leave()
+
+
+def _asked(driver: Driver, seat: Seat, view: View) -> Command:
+    """The command of a seat. Raises PluginFault where it is none."""
+    with held(driver, "its seat's act"):
+        command = seat.act(view)
+    if not isinstance(command, Command):
+        raise fault_of(driver, f"its seat's act returned {type(command).__name__}, expected Command")
+    return command
 
 
 def task_of(staging: Staging) -> Task:
@@ -83,8 +97,8 @@ def task_of(staging: Staging) -> Task:
 class _Run:
     """A running drive."""
 
-    def __init__(self, staging: Staging, seat: Seat, release_s: float, factor: float) -> None:
-        self.staging, self.seat = staging, seat
+    def __init__(self, staging: Staging, ask: Callable[[View], Command], release_s: float, factor: float) -> None:
+        self.staging, self.ask = staging, ask
         self.ego = Ego.at_start(staging.way, factor)
         self.info = staging.script.info(staging.ego)
         moving = [float(w.speed_mps.max()) for w in staging.lines.values()]
@@ -93,19 +107,30 @@ class _Run:
         self.rows: dict[str, list[tuple[float, float, float, float]]] = {n: [] for n in (staging.ego, *staging.lines)}
         self.taken: list[float] = []
         self.seen_s: list[float] = []
+        self.reach = Reach(self._me(), staging.script.friction_mps2)
 
     def go(self) -> None:
         until = self.staging.contact_s + AFTER_S
         while self.clock.now_s < until and len(self.taken) * STEP_S < LONGEST_S:
             users = [self._other(name) for name in self.staging.lines]
             self._note(users)
-            command = self.seat.act(self._view(users))
-            self._step(command)
+            view = self._view(users)
+            command = self.ask(view)
+            try:
+                self.reach.check(view.ego, command)
+            except ValueError as fault:
+                if self._touched():  # the drive is over, whatever the driver says of it
+                    return
+                raise SimulationFailed(f"the driver of {self.staging.ego} asks for {fault}") from fault
+            self._step(self.reach.pedalled(view.ego, command))
             if len(self.taken) % _CHECKED == 0 and self._touched():
                 return
 
+    def _me(self) -> RoadUser:
+        return _user(self.staging, self.staging.ego, self.staging.way, self.script_s, 1.0, self.ego)
+
     def _view(self, users: Sequence[RoadUser]) -> View:
-        me = _user(self.staging, self.staging.ego, self.staging.way, self.script_s, 1.0, self.ego)
+        me = self._me()
         seen = tuple(u for u in users if u.actor not in self.staging.coupled)
         return View(len(self.taken) * STEP_S, me, self.ego.station_m, self.script_s, seen)
 

@@ -24,7 +24,7 @@ from sgcad_core.geometry.plane import arc_lengths, box_gaps
 from sgcad_core.handover.drive import Drive
 from sgcad_core.handover.severity import Severity, severity
 from sgcad_core.metrics import conflict, displacement
-from sgcad_core.metrics.conflict import Track
+from sgcad_core.metrics.swept_cells import Track
 
 Outcome = Literal["avoided", "mitigated", "unchanged", "worse", "lost"]
 OUTCOMES: tuple[Outcome, ...] = ("avoided", "mitigated", "unchanged", "worse", "lost")

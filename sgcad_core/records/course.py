@@ -43,6 +43,8 @@ class RestTold:
 class CourseTold:
     """Stated acts of one vehicle beside its maneuver."""
 
+    from_rest: bool = False
+    """Stands, then moves on into its first contact."""
     brakes: bool = False
     """Before its first contact."""
     steers: Steering | None = None
@@ -71,8 +73,13 @@ class ImpactTold:
     """A vehicle's id, or the report's word for the thing."""
     actor_area: Area | None = None
     other_area: Area | None = None
-    before: bool = False
-    """Before the first contact of two vehicles."""
+    after: int = 1
+    """Number of contacts of two vehicles that are told before it; alone with things, the first thing is one."""
+
+    @property
+    def before(self) -> bool:
+        """Whether it comes before the first contact of two vehicles."""
+        return self.after == 0
 
 
 Courses = Mapping[str, CourseTold]

@@ -7,10 +7,10 @@ from typing import Literal
 from pydantic import Field
 
 from sgcad_core.record_base import Record
+from sgcad_core.record_base import Value as Value
 
 Basis = Literal["text", "diagram", "model", "default", "person"]
 Status = Literal["stated", "inferred", "default"]
-Value = str | int | float | bool | tuple[str, ...] | None
 
 
 class Fact(Record):

@@ -16,6 +16,9 @@ MOST_NATS = 6.0
 DRAWN = "whole_drawn"
 """Weights of the same model for reports with a drawing, which shows it much that their text does not tell. They suppose
 that the model sees drawings, as the embedded one does."""
+HEARD = "whole_learned"
+"""Weights of the same model for reports without a drawing of which the learned reader of numbered reports says
+something."""
 LEARNED = "learned"
 """In a config's `second_opinion`: the reader that learned where the rules err
 (`sgcad_core.reading.second_reader.learned_reader`)."""
@@ -24,10 +27,12 @@ WHOLE = "whole"
 (`sgcad_core.reading.second_reader.fuse_whole`)."""
 WEIGHTS = Path(__file__).parents[1] / "reading" / "second_reader" / "learned.npz"
 """What that reader learned."""
+NUMBERED_WEIGHTS = WEIGHTS.with_name("numbered.npz")
+"""What the reader of numbered reports learned (`sgcad_core.reading.second_reader.numbered_reader`)."""
 
 
 class Weights(Record):
-    """How one field is decided where both readers differ (`sgcad_core.reading.second_reader.fuse_gist`), and `agree`:
+    """How one field is decided where both readers differ (`sgcad_core.reading.second_reader.combiner`), and `agree`:
     how often both are right where they do not (None: as sure as the second reader is)."""
 
     differ: float = 0.0
@@ -37,6 +42,8 @@ class Weights(Record):
     """Per nat by which the report makes the value likelier than it is without it, up to `MOST_NATS`."""
     tells: float = 0.0
     """Per unit of the log-odds that the evidence tells the value, by the model's own head."""
+    learned: float = 0.0
+    """Per unit of the log-odds of the value against the rules' own, by the learned reader."""
     agree: float | None = Field(0.9, ge=0, le=1)
 
 
@@ -61,6 +68,17 @@ class Answered(Record):
     """Probability that the evidence tells each value, by the same path, of a model that has heads for it."""
 
 
+class Guess(Record):
+    """What the learned reader of numbered reports says of one question: another answer than the rules' (None: theirs
+    stands), the probability of what stands, its share for every answer, and the number of the sentence that speaks for
+    the other one."""
+
+    value: str | None = None
+    p: float = Field(ge=0, le=1)
+    shares: Mapping[str, float] = {}
+    sentence: int | None = None
+
+
 class Opinion(Record):
     """The second reader's values and their weights against the rules. Fields without weights are the rules'."""
 
@@ -69,5 +87,7 @@ class Opinion(Record):
     answered: Answered | None = None
     """What it answers to the whole report; its weights then go by kinds of
     `sgcad_core.reading.second_reader.field_claims`."""
+    guesses: Mapping[str, Guess] = {}
+    """What the learned reader says of a numbered report, by the fields of its questions."""
     takes: float = Field(0.5, ge=0, le=1)
     """Probability from which on another value than the rules' is taken."""

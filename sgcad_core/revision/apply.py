@@ -12,7 +12,7 @@ from sgcad_core.case.records import RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.findings import FindingFactory
-from sgcad_core.formats.openscenario.writing.writer import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
+from sgcad_core.formats.openscenario.writing.versions import DEFAULT_ENCODING, DEFAULT_VERSION, Encoding, Version
 from sgcad_core.formats.sumo.graph_spec import spec_of_graph
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
@@ -66,7 +66,7 @@ def apply_scenario_edits(
     crash = reading.crash
     made = compile_scenario(
         behavior, network, version, encoding,
-        may_skid=reading.lost_control, courses=crash.courses, signals=reading.signals,
+        may_skid=reading.lost_control, courses=crash.driven, signals=reading.signals,
     )  # fmt: skip
     return made.model_copy(update={"notes": (*_kept_notes(scenario, made), *made.notes)})
 

@@ -23,6 +23,7 @@ from sgcad_core.records.edits import AS_READ, canonical
 from sgcad_core.records.facts import Value
 from sgcad_core.records.specs import Actor, BehaviorSpec, Compass, Contact, NearCrash, Node, Road, RoadSpec
 from sgcad_core.revision.values import ACTOR_FIELDS, CONTACT_FIELDS, ROAD_FIELDS, value_of
+from sgcad_core.system.yaml_faults import YAML_FAULTS
 
 Form = Literal["integer", "number", "choice", "flag", "list", "actor", "road", "text"]
 
@@ -128,7 +129,7 @@ class Editable:
 def _yaml(field: str, raw: str) -> object:
     try:
         return yaml.safe_load(raw)
-    except yaml.YAMLError as fault:
+    except YAML_FAULTS as fault:
         raise WrongEdit(f"{field}: {raw!r} is no value: {fault}") from fault
 
 

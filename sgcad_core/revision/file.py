@@ -20,13 +20,15 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from filelock import Timeout
 from pydantic import ValidationError
 
 from sgcad_core.errors import BadInput, ConfigError, WrongEdit
 from sgcad_core.records.edits import AS_READ, Edit
 from sgcad_core.revision.fields import parsed_edit
 from sgcad_core.system.locks import lock_file
-from sgcad_core.system.report_files import FACTS, LOCK, facts_file, is_regular, read_regular
+from sgcad_core.system.report_files import JOURNAL, LOCK, facts_file, is_regular, read_regular
+from sgcad_core.system.yaml_faults import YAML_FAULTS
 
 MOST_BYTES = 1_000_000
 MOST_EDITS = 2_000
@@ -65,7 +67,7 @@ def read_edits(path: Path, digest: str = "") -> tuple[Edit, ...]:
         return ()
     try:
         raw = yaml.safe_load(read_regular(path, most=MOST_BYTES).decode("utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError) as fault:
+    except YAML_FAULTS as fault:
         raise BadInput(f"{path}: no YAML: {fault}; mend it, or remove it to go by the reading alone") from fault
     rows = _rows(path, raw)
     meant = str(raw.get("for") or "") if isinstance(raw, dict) else ""
@@ -106,20 +108,25 @@ def write_edits(path: Path, edits: Sequence[Edit], digest: str = "") -> None:
         if not edits:
             path.unlink(missing_ok=True)
             return
-        made, partial = tempfile.mkstemp(prefix=f".{FACTS}.", dir=path.parent)
-        try:
-            with os.fdopen(made, "w", encoding="utf-8") as out:
-                out.write(_text(edits, digest))
-                out.flush()
-                os.fsync(out.fileno())
-            Path(partial).chmod(0o644)
-            os.replace(partial, path)
-        except BaseException:
-            with contextlib.suppress(FileNotFoundError):
-                os.unlink(partial)
-            raise
+        replace_text(path, _text(edits, digest))
     except OSError as fault:
         raise _unwritable(path, fault) from fault
+
+
+def replace_text(path: Path, text: str) -> None:
+    """Write a file beside a report whole, on the disk before it has its name. Raises OSError: it cannot be written."""
+    made, partial = tempfile.mkstemp(prefix=f".{path.name.lstrip('.')}.", suffix=JOURNAL, dir=path.parent)
+    try:
+        with os.fdopen(made, "w", encoding="utf-8") as out:
+            out.write(text)
+            out.flush()
+            os.fsync(out.fileno())
+        Path(partial).chmod(0o640)
+        os.replace(partial, path)
+    except BaseException:
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(partial)
+        raise
 
 
 def _unwritable(path: Path, fault: OSError) -> ConfigError:
@@ -154,16 +161,19 @@ def without_last_edits(edits: Sequence[Edit]) -> tuple[Edit, ...]:
 
 
 @contextmanager
-def facts_lock(source: Path) -> Iterator[None]:
+def facts_lock(source: Path, timeout_s: float = -1) -> Iterator[None]:
     """Keeps other processes from changing the facts of this report during the block; the next one waits.
 
-    Raises BadInput where the report is gone, ConfigError where its folder cannot be written.
+    Raises filelock.Timeout where `timeout_s` (-1: no limit) is over, BadInput where the report is gone, ConfigError
+    where its folder cannot be written.
     """
     file = facts_file(source)
     with contextlib.ExitStack() as held:
         try:
             source.stat()
-            held.enter_context(lock_file(file.with_name(f".{file.name}{LOCK}")))
+            held.enter_context(lock_file(file.with_name(f".{file.name}{LOCK}"), timeout_s))
+        except Timeout:
+            raise
         except PermissionError as fault:
             raise _unwritable(file, fault) from fault
         except OSError as fault:

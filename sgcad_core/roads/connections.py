@@ -280,9 +280,11 @@ def _merges_from_right(approach: _Way, target: _Exit, arriving: Sequence[_Way]) 
 
 
 def _center_lane_link(approach: _Way, exits: Mapping[Movement, list[_Exit]]) -> list[Link]:
-    """The two-way left-turn lane goes on into that of the road ahead; it belongs to the forward edges."""
-    for target in exits.get("through", []):
-        forward = approach.direction == target.way.direction == "forward"
-        if forward and approach.center_lane and target.way.center_lane:
-            return [Link(approach.edge, approach.lanes, target.way.edge, target.way.lanes)]
-    return []
+    """The two-way left-turn lane goes on into that of the road ahead, and turns left; it belongs to the forward
+    edges."""
+    if not approach.center_lane or approach.direction != "forward":
+        return []
+    ahead = [t.way for t in exits.get("through", []) if t.way.direction == "forward" and t.way.center_lane]
+    left = [t.way for t in exits.get("left", []) if t.angle_deg > THROUGH_DEG]
+    found = [Link(approach.edge, approach.lanes, way.edge, way.lanes) for way in ahead[:1]]
+    return found + [Link(approach.edge, approach.lanes, way.edge, way.lanes - 1) for way in left]

@@ -70,6 +70,12 @@ class Edge:
         """Lanes that were laid for cars, those that a work zone closes among them, from right to left."""
         return tuple(lane for lane in self.lanes if lane.allows_cars or lane.type == ROAD_WORKS)
 
+    @property
+    def center_lane(self) -> Lane | None:
+        """The two-way left-turn lane: the innermost lane, of no type and not for cars that go straight on."""
+        last = self.lanes[-1] if self.lanes else None
+        return last if last and not last.allows_cars and not last.type and self.car_lanes else None
+
 
 @dataclass(frozen=True, eq=False)
 class Connection:

@@ -15,8 +15,8 @@ from sgcad_core.errors import BadInput
 MAX_FILE_BYTES = 50_000_000
 MAX_FILES = 1000
 """In a report's folder, those below it included: more is a folder of many reports, or a link to a whole disk."""
-LOCK = ".lock"
-"""Suffix of lock files."""
+LOCK, JOURNAL = ".lock", ".journal"
+"""Suffixes of files that are no part of a report: locks, and what was before an edit that is being written."""
 FACTS = "facts.yaml"
 """The file of edits, beside a report (`sgcad_core.revision`)."""
 
@@ -27,10 +27,10 @@ def facts_file(source: Path) -> Path:
 
 
 def files_below(folder: Path) -> list[Path]:
-    """All files in a report's folder and below, lock files excepted. Raises BadInput: more than a report has."""
+    """All files in a report's folder and below, locks and journals excepted. Raises BadInput: too many."""
     found: list[Path] = []
     for looked, file in enumerate(folder.rglob("*")):
-        found += [file] if file.is_file() and file.suffix != LOCK else []
+        found += [file] if file.is_file() and file.suffix not in (LOCK, JOURNAL) else []
         if looked >= MAX_FILES:
             raise BadInput(f"{folder}: more than {MAX_FILES} files and folders in it: give the folder of one report")
     return sorted(found)
@@ -42,12 +42,13 @@ def read_regular(path: Path, inside: Path | None = None, most: int = MAX_FILE_BY
         check_inside(path, inside)
     try:
         opened = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    except OSError as fault:
-        raise BadInput(f"{path}: cannot be read: {fault.strerror or fault}") from fault
+    except (OSError, ValueError) as fault:
+        raise BadInput(f"{path}: cannot be read: {getattr(fault, 'strerror', None) or fault}") from fault
+    about = os.fstat(opened)
+    if not stat.S_ISREG(about.st_mode):
+        os.close(opened)
+        raise BadInput(f"{path}: is not a regular file: give a text, an XML file, a PDF or a folder with them")
     with os.fdopen(opened, "rb") as file:
-        about = os.fstat(opened)
-        if not stat.S_ISREG(about.st_mode):
-            raise BadInput(f"{path}: is not a regular file: give a text, an XML file, a PDF or a folder with them")
         if about.st_size > most:
             raise BadInput(f"{path}: {about.st_size:,} bytes, the limit is {most:,}: cut the file")
         try:

@@ -20,6 +20,8 @@ from filelock import FileLock
 
 PREFIX = "sgcad-temp-"
 _LOCK, _CONTENT = "lock", "content"
+_own: set[tuple[int, Path]] = set()
+"""Folders that blocks hold now, with the process: a forked child inherits them and owns none."""
 
 
 @contextmanager
@@ -51,14 +53,23 @@ def remove_leftover_folders() -> int:
     return _remove_leftovers(Path(tempfile.gettempdir()), PREFIX)
 
 
+def remove_own_folders() -> None:
+    """Removes the folders that this process holds; for its end where blocks are not left in order."""
+    for process, folder in list(_own):
+        if process == os.getpid():
+            shutil.rmtree(folder, ignore_errors=True)
+
+
 @contextmanager
 def _locked_folder(place: Path, prefix: str) -> Iterator[Path]:
     outer, lock = _new_locked(place, prefix)
+    _own.add(mine := (os.getpid(), outer))
     try:
         (folder := outer / _CONTENT).mkdir(mode=0o700)
         yield folder
     finally:
         shutil.rmtree(outer, ignore_errors=True)
+        _own.discard(mine)
         lock.release()
 
 

@@ -28,7 +28,7 @@ from sgcad_core.result import CaseRecord, as_declared, result_of
 
 KEYS = {
     "case", "config", "status", "reason", "missing", "attempts", "network", "actors", "collision", "grounding",
-    "seconds", "notes", "facts", "sentences", "near_crash", "account", "redactions",
+    "seconds", "notes", "facts", "sentences", "near_crash", "account", "redactions", "disagreements", "timeline",
 }  # fmt: skip
 AREAS = st.sampled_from(["front", "back", "left", "right"])
 DECLARED = Contact(striker="V1", struck="V2", striker_area="front", struck_area="left")

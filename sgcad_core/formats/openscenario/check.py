@@ -19,7 +19,8 @@ from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.opendrive.checks.road_index import RoadIndex, lane_index
 from sgcad_core.formats.opendrive.geometry import end_pose, geometries, start_pose
 from sgcad_core.formats.openscenario.playing.player import play
-from sgcad_core.formats.openscenario.reading.elements import SOURCE, XmlNode, read_root
+from sgcad_core.formats.openscenario.reading.elements import XmlNode, read_root
+from sgcad_core.formats.openscenario.reading.file_context import SOURCE
 from sgcad_core.formats.xml import asam_schema, parse_xml, schema_errors
 from sgcad_core.geometry.plane import Floats
 

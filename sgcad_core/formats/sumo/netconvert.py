@@ -16,7 +16,7 @@ from pathlib import Path
 
 from sgcad_core import settings
 from sgcad_core.case.records import PlainXml, RoadNetwork
-from sgcad_core.errors import ConfigError, InvalidOutput, SimulationFailed
+from sgcad_core.errors import ConfigError, InvalidOutput, ProcessDied, SimulationFailed
 from sgcad_core.formats.opendrive.write import write_xodr
 from sgcad_core.formats.sumo.plain_xml import xsd_findings
 from sgcad_core.records.specs import RoadSpec
@@ -105,11 +105,12 @@ def _call(arguments: Sequence[str], folder: Path) -> tuple[int, str]:
 
 
 def _check_left_alone(code: int, folder: Path) -> None:
-    """Raise SimulationFailed where netconvert was ended from outside, or had no room to write."""
+    """Raise ProcessDied where netconvert was ended from outside, SimulationFailed where it had no room to write."""
     if ended_from_outside(code):
-        raise SimulationFailed(
+        raise ProcessDied(
             f"netconvert was ended by {signal.Signals(-code).name}, from outside or for want of memory: see to memory "
-            "and run again"
+            "and run again",
+            from_outside=True,
         )
     if code and shutil.disk_usage(folder).free < LEAST_FREE:
         raise SimulationFailed(f"netconvert ended with {code} and {folder.parent} is full: make room and run again")

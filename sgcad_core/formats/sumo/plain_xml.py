@@ -42,7 +42,7 @@ CIRCLE = "circle"
 """Of a piece of a roundabout, where others tell their kind."""
 MAX_LANES = 16
 """Of one edge: the widest toll plazas have more, no road where a report tells a crash has."""
-DRIVEWAY_RADIUS_M = 1.5
+DRIVEWAY_RADIUS_M = 3.5
 """Corners of driveways; SUMO's 4 m elsewhere."""
 CENTER_LANE_CLASS = "authority"
 """The vehicle class that alone may use a two-way left-turn lane, so that no one counts it as a through lane."""

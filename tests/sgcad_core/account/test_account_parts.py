@@ -27,10 +27,10 @@ DEMO = ROOT / "docs" / "demo" / "left-turn-at-signal"
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """The bundled left turn at a signal, executed."""
-    from flows.case.chain import CaseRun, run_at_once
+    from flows.case.chain import CaseRun
     from flows.case_files.find_cases import Case
 
-    run = CaseRun(load("template.yaml", ("tracker=none",)), Case(DEMO, "c1"), run_at_once)
+    run = CaseRun(load("template.yaml", ("tracker=none",)), Case(DEMO, "c1"))
     run.go()
     record = run.record()
     return ExecutedCase(record.reading, record.network, record.scenario, record.execution, record.drawn)
@@ -72,7 +72,8 @@ def test_a_bundled_report_is_whole_and_its_counts_agree(made):
 
 def test_nothing_executed_is_no_verdict():
     assert account_of(None, ()).summary() == {
-        "verdict": "none", "told": 0, "has": 0, "lacking": 0, "assumed": 0, "items": []
+        "verdict": "none", "sentence": "there is no scenario", "told": 0, "has": 0, "lacking": 0, "assumed": 0,
+        "unread": 0, "contradicts": 0, "items": [],
     }  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
+from sgcad_core.asking.prompts import repair_text
 from sgcad_core.asking.refine import DOUBTFUL_ATTEMPTS, MAX_ATTEMPTS, Refinement, Turn, _holds, refine
 from sgcad_core.case.records import (
     Attempt,
@@ -18,6 +19,7 @@ from sgcad_core.case.records import (
     RoadNetwork,
 )
 from sgcad_core.errors import InvalidOutput, MissingTool, Refused
+from sgcad_core.findings import Told
 from sgcad_core.interfaces import Validator
 
 CONTEXT = Context(narrative="V1 struck V2.")
@@ -182,23 +184,63 @@ def test_the_prompt_of_a_call_that_gave_nothing_is_kept():
     assert outcome.attempts[0].answer == ""
 
 
-def test_every_attempt_runs_through_on_attempt_by_name():
-    names = []
+def test_a_stage_goes_on_turn_by_turn_as_at_once():
+    """A flow makes a task of each turn."""
+    stage = Refinement("road", by_log("repair", "repair", ""), [Judge()], evidence, answer)
+    turns = []
+    while not stage.ended(turns):
+        turns.append(stage.next_turn(turns))
+    at_once = Refinement("road", by_log("repair", "repair", ""), [Judge()], evidence, answer).turns()
+    assert [turn.attempt.number for turn in turns] == [1, 2, 3]
+    assert [(t.attempt.prompt, t.attempt.findings) for t in turns] == [
+        (t.attempt.prompt, t.attempt.findings) for t in at_once
+    ]
 
-    def note(name, turn) -> Turn:
-        names.append(name)
-        return turn()
 
-    refine("road", by_log("repair", "repair", ""), [Judge()], evidence, ask=answer, on_attempt=note)
-    assert names == ["road[1]", "road[2]", "road[3]"]
-
-
-def test_doubts_ask_again_and_the_least_doubtful_is_kept():
-    outcome = refine("road", by_log("doubt doubt", "doubt", "doubt doubt", ""), [Judge()], evidence, ask=answer)
-    assert (outcome.status, len(outcome.attempts), outcome.kept) == ("written", DOUBTFUL_ATTEMPTS, 2)
-    assert outcome.artifact == RoadNetwork(log="doubt")
+@pytest.mark.parametrize("severity", ["doubt", "question"])
+def test_what_is_soft_is_asked_once_and_the_least_doubtful_is_kept(severity):
+    logs = f"{severity} {severity}", severity, ""
+    outcome = refine("road", by_log(*logs), [Judge()], evidence, ask=answer)
+    assert (outcome.status, len(outcome.attempts), outcome.kept) == ("written", 2, 2)
+    assert outcome.artifact == RoadNetwork(log=severity)
     assert outcome.told_by is outcome.attempts[1]
-    assert "1. [judge] a doubt (found lanes)" in outcome.attempts[2].prompt
+    assert f"1. [judge] a {severity} (found lanes)" in outcome.attempts[1].prompt
+
+
+def test_a_new_question_is_put_though_an_old_one_is_settled():
+    outcome = refine("road", by_log("question", "question doubt", "question doubt"), [Judge()], evidence, ask=answer)
+    assert (outcome.status, len(outcome.attempts), outcome.kept) == ("written", 3, 1)
+
+
+def test_a_question_quotes_its_sentence_and_leaves_the_answer_its_value():
+    told = Told(field="vehicles.V1.maneuver", value="turn_left", by="rules", confidence=0.9, start=0, end=20,
+                sentence="V1 was turning left.")  # fmt: skip
+    asked = Finding(source="n", severity="question", what="another maneuver", where="V1.maneuver", value="straight",
+                    told=told)  # fmt: skip
+    said = repair_text("{}", [asked])
+    assert "vehicles.V1.maneuver = turn_left: 'V1 was turning left.'" in said
+    assert "Keep your value 'straight'" in said
+    assert "cannot be used" not in said
+    assert "cannot be used" in repair_text("{}", [asked, Finding(source="n", what="no JSON")])
+
+
+def test_a_model_that_cannot_read_questions_draws_anew_a_few_times():
+    outcome, _ = Refinement("road", by_log("question"), [Judge()], evidence, answer, show_findings=False).run()
+    assert (outcome.status, len(outcome.attempts), outcome.kept) == ("written", DOUBTFUL_ATTEMPTS, 1)
+
+
+@pytest.mark.parametrize(("logs", "status", "attempts", "kept"), [
+    (("repair", ""), "written", 2, 2), (("repair", "repair"), "exhausted", 2, 1), (("question", ""), "written", 2, 2),
+    (("question", "question"), "written", 2, 1), (("doubt", ""), "written", 1, 1),
+    (("repair", "question"), "written", 2, 2),
+])  # fmt: skip
+def test_a_writer_that_mends_gets_a_second_attempt(logs, status, attempts, kept):
+    def write(findings, ask, attempt):
+        assert bool(findings) == (attempt > 1)
+        return RoadNetwork(log=logs[attempt - 1])
+
+    outcome, _ = Refinement("road", write, [Judge()], evidence, mends=("repair", "question")).run()
+    assert (outcome.status, len(outcome.attempts), outcome.kept) == (status, attempts, kept)
 
 
 @pytest.mark.parametrize(("logs", "attempts", "kept"), [
@@ -227,7 +269,7 @@ def test_a_doubt_about_what_is_to_be_repaired_holds_nothing():
     assert _holds([Turn(Attempt(stage="scenario", number=1, findings=(*doubted, repaired)), RoadNetwork())]) == ()
 
 
-WORDS = st.lists(st.sampled_from(["repair", "note", "refuse", "doubt"]), max_size=4)
+WORDS = st.lists(st.sampled_from(["repair", "note", "refuse", "question", "doubt"]), max_size=4)
 
 
 @given(st.lists(WORDS, min_size=1, max_size=12), st.integers(1, 10))
@@ -241,9 +283,10 @@ def test_the_loop_always_ends_in_one_of_three_ways(words, limit):
     assert [a.number for a in outcome.attempts] == list(range(1, len(outcome.attempts) + 1))
     expected = "written" if usable else "refused" if "refuse" in last else "exhausted"
     assert outcome.status == expected
-    assert all({"repair", "doubt"} & set(found) for found in every[:-1])
+    assert all({"repair", "question", "doubt"} & set(found) for found in every[:-1])
     if usable:
-        assert outcome.kept == min(usable, key=lambda i: every[i - 1].count("doubt"))
+        soft = {i: (every[i - 1].count("question"), every[i - 1].count("doubt")) for i in usable}
+        assert outcome.kept == min(usable, key=soft.__getitem__)
         assert len(every) < usable[0] + DOUBTFUL_ATTEMPTS
 
 

@@ -10,8 +10,9 @@ from sgcad_core.asking.second_opinion import load_weights, probabilities, with_g
 from sgcad_core.case.records import Context, CrashReport, Diagram, Generation, Query, Token
 from sgcad_core.errors import ConfigError
 from sgcad_core.reading.second_reader.field_claims import KINDS
+from sgcad_core.reading.second_reader.fuse_numbered import RULE as LEARNED_RULE
 from sgcad_core.reading.second_reader.seven_question_gist import FIELDS
-from sgcad_core.records.second_reader import DRAWN, WHOLE
+from sgcad_core.records.second_reader import DRAWN, HEARD, WHOLE
 
 ANSWER = {
     "touched": True, "met": "suv", "subject": "stopped", "other": "straight", "subject_area": "back",
@@ -138,9 +139,11 @@ def test_of_a_report_that_numbers_nobody_nothing_is_asked() -> None:
 def test_without_an_answer_the_rules_stand_and_the_notes_say_so(answers: list[str]) -> None:
     some = iter(answers)
     told = with_model_opinion(NUMBERED, lambda context, query: Generation(text=next(some)))
-    assert told.opinion is None
+    assert told.opinion is not None
+    assert told.opinion.answered is None
+    assert all(fact.rule == LEARNED_RULE for fact in told.reading.facts if fact.basis == "model")
     assert "no second opinion" in told.notes[-1]
 
 
 def test_the_shipped_weights_are_of_kinds_of_fields() -> None:
-    assert set(load_weights(WHOLE, KINDS)) == set(load_weights(DRAWN, KINDS)) == set(KINDS)
+    assert all(set(load_weights(name, KINDS)) == set(KINDS) for name in (WHOLE, DRAWN, HEARD))

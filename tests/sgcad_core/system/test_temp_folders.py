@@ -36,6 +36,16 @@ def test_a_folder_vanishes_with_its_block(place):
     assert not list(place.iterdir())
 
 
+def test_a_process_that_ends_at_once_removes_its_own_folders_alone(place):
+    code = "from sgcad_core.system.temp_folders import *\nimport os\n"
+    code += "with temp_folder('test'):\n    if os.fork() == 0:\n        remove_own_folders(); os._exit(0)\n"
+    code += "    os.wait(); print(len(leftover_folders()), len(os.listdir(os.environ['TMPDIR'])), flush=True)\n"
+    code += "    remove_own_folders(); os._exit(0)"
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert told.stdout.split() == ["0", "1"]  # a forked child owns none of them
+    assert not list(place.iterdir())
+
+
 def test_a_folder_may_be_locked_by_who_uses_it():
     with temp_folders.temp_folder("test") as folder, FileLock(folder / "lock", blocking=False) as held:
         assert held.is_locked

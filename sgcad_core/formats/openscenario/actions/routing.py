@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.actions.running import PRIVATE, ActionStart, RunningAction, at_once, nested
 from sgcad_core.formats.openscenario.playing.body import Body
 from sgcad_core.formats.openscenario.playing.families import Family
@@ -18,6 +19,8 @@ from sgcad_core.formats.openscenario.roads.way import LanePlace, Route
 ROUTING: Family[ActionStart] = Family("routing action")
 PRIVATE.plays("RoutingAction")(lambda node: nested(ROUTING, node))
 ROUTING.refuses("RandomRouteAction", remark="its random routes are the simulator's own", remedy="assign a route")
+JUMP_M = 1.0
+"""A trajectory that begins farther away than this is noted."""
 _FOLLOW = "followingMode 'follow' is driven exactly on the path: the standard leaves the steering to the simulator"
 _REMARK = (
     "followingMode 'follow' is driven exactly on the path, at even accelerations between timed vertices, with a note"
@@ -36,17 +39,29 @@ def _follow(node: XmlNode) -> ActionStart:
 
     def begin(scene: Scene, actor: str) -> RunningAction:
         body = scene.body(actor, node)
-        made = make(scene, actor)
+        made, before = make(scene, actor), body.pose if body.present else None
         body.course = body.timed = body.place = None
         body.present, body.at_end = True, False
         if isinstance(made, OffsetCourse):
-            return _untimed(body, made)
+            running = _untimed(body, made)
+            _note_jump(node, actor, before, body)
+            return running
         body.timed = timed = made.eased(abs(body.speed_mps), scene.dt_s) if eases else made
         body.pace = body.next_mps = None
         body.pose, body.speed_mps = body.seated(timed.pose(scene.step)), timed.speed(scene.step)
+        _note_jump(node, actor, before, body)
         return RunningAction(body, ("path", "speed"), lambda scene: scene.t_s >= timed.end_s - 1e-9).claim()
 
     return begin
+
+
+def _note_jump(node: XmlNode, actor: str, before: Pose | None, body: Body) -> None:
+    """Note that the trajectory does not begin where the entity is: it is put there at once."""
+    if before is None or body.pose is None:
+        return
+    gap = math.dist(before[:2], body.pose[:2])
+    if gap > JUMP_M:
+        node.note("the entity jumps onto the trajectory", f"{actor}: {gap:.1f} m", "let it begin where the entity is")
 
 
 def _untimed(body: Body, course: OffsetCourse) -> RunningAction:

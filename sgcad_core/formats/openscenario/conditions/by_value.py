@@ -29,7 +29,8 @@ def _element_state(node: XmlNode) -> Test:
     state = node.choice("state", (*_STATES, *TRANSITIONS))
 
     def test(scene: Scene) -> bool:
-        stages = list(scene.named(kind, ref))
+        stages = scene.named(kind, ref)
+        node.spend("tests of conditions", len(stages))
         if not stages:
             known = ", ".join(s.path for s in scene.stages if s.kind == kind) or "none"
             raise node.fault(f"no storyboard element of type {kind!r} has this name", ref, f"there are: {known[:500]}")

@@ -45,6 +45,12 @@ class Trigger:
         self.entities = tuple(dict.fromkeys(name for group in fired for c in group for name in c.entities))
         return min((max((c.moment(scene) for c in group), default=scene.t_s) for group in fired), default=None)
 
+    def close(self) -> None:
+        """Note every edge that could not come because its condition held from the first."""
+        for group in self._groups:
+            for condition in group:
+                condition.close()
+
     def reset(self) -> None:
         """Forget what was seen: the next execution waits anew."""
         for group in self._groups:
@@ -61,6 +67,8 @@ class _Condition:
         if not 0 <= self.delay_s <= 3600:
             raise node.fault("attribute 'delay' must lie within 0 and 3600 s", f"{self.delay_s:g}")
         self.entities: list[str] = []
+        self._node, self._came = node, False
+        self._held_from_s: float | None = None
         self.test = self._test(node)
         self.time_s = _time_waited_for(node)
         self.reset()
@@ -78,12 +86,21 @@ class _Condition:
         """Evaluate it at this step."""
         now = self.test(scene)
         fires = now if self.edge == "none" else self.before is not None and _EDGES[self.edge](self.before, now)
+        if now and self.before is None and self._held_from_s is None:
+            self._held_from_s = scene.t_s
         self.before = now
         if fires:
+            self._came = True
             self.fired.append(scene.step)
         due = scene.step - math.ceil(self.delay_s / scene.dt_s - EPSILON)
         self.fired = [step for step in self.fired if step >= due]
         return due in self.fired
+
+    def close(self) -> None:
+        """Note a rising edge that never came, though the condition held: from before it was looked at."""
+        if self.edge == "rising" and self._held_from_s is not None and not self._came:
+            why = f"it holds already at {self._held_from_s:g} s, when it is looked at first"
+            self._node.note("the rising edge of this condition never comes", why, 'write conditionEdge="none"')
 
     def _test(self, node: XmlNode) -> Test:
         children = node.children("ByValueCondition", "ByEntityCondition")

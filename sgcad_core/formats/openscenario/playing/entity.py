@@ -10,6 +10,8 @@ MAX_ENTITIES = 200
 MAX_TRAILERS = 10
 LEAST_M = 0.1
 """Side of a box that a file gives none."""
+MOST_M = 500.0
+"""Longest side of a box: longer than any ship."""
 KINDS = ("Vehicle", "Pedestrian", "MiscObject")
 _BY_TYPE = {"vehicle": "Vehicle", "pedestrian": "Pedestrian", "miscellaneous": "MiscObject", "miscObject": "MiscObject"}
 
@@ -94,7 +96,9 @@ def _side(size: XmlNode, name: str) -> float:
     if size.number(name) == 0 and not size.book.strict:
         size.note(f"attribute {name!r} is 0", remedy=f"played with {LEAST_M:g} m")
         return LEAST_M
-    return size.positive(name)
+    if (side := size.positive(name)) > MOST_M:
+        raise size.fault(f"attribute {name!r} must be at most {MOST_M:g} m", f"{side:g}")
+    return side
 
 
 def _dx(found: XmlNode, tag: str) -> float | None:

@@ -7,6 +7,8 @@ curvature, and what goes sideways does not go ahead. Knows no XML and no storybo
 from __future__ import annotations
 
 import math
+from array import array
+from bisect import bisect_right
 from functools import cached_property
 
 import numpy as np
@@ -39,6 +41,8 @@ class OffsetCourse:
         `aside_counts`: whether the speed is that of the slanting way, or that along the lane.
         """
         self.points, self.along = points, arc_lengths(points)
+        self._stations = array("d", self.along.tobytes())  # asked at every step, where numpy's scalars are slow
+        self._places = array("d", np.ascontiguousarray(points).tobytes())
         self.s_m, self.shift, self.by_time = s_m, shift or Transition(0.0, 0.0, "step", 0.0), by_time
         self.way, self.closed, self.fixed, self.reverse = way, bool(closed), closed is not None, False
         self.headings: Floats | None = None
@@ -55,7 +59,7 @@ class OffsetCourse:
     @property
     def rest_m(self) -> float:
         """Distance to the end."""
-        return math.inf if self.closed else float(self.along[-1] - self.s_m)
+        return math.inf if self.closed else self._stations[-1] - self.s_m
 
     @property
     def pose(self) -> Pose:
@@ -80,7 +84,7 @@ class OffsetCourse:
             drift = 0.0
         self.s_m += ahead / max(1.0 - self.offset_m * self._curvature(self.s_m), 0.1)
         if self.closed:
-            self.s_m %= float(self.along[-1])
+            self.s_m %= self._stations[-1]
         return self._beside(self.s_m, drift)
 
     def move(self, distance_m: float) -> Pose:
@@ -90,25 +94,26 @@ class OffsetCourse:
 
     def place(self) -> tuple[LanePlace, int] | None:
         """The lane place now and the sense of driving; None off the roads."""
-        if self.way is None or self.s_m > self.along[-1] + EPSILON:
+        if self.way is None or self.s_m > self._stations[-1] + EPSILON:
             return None
         i = self._index(self.s_m)
-        share = (self.s_m - self.along[i]) / max(self.along[i + 1] - self.along[i], EPSILON)
-        return self.way.place(i, float(np.clip(share, 0.0, 1.0)), self.offset_m)
+        before, behind = self._stations[i : i + 2]
+        share = (self.s_m - before) / max(behind - before, EPSILON)
+        return self.way.place(i, min(max(share, 0.0), 1.0), self.offset_m)
 
     def _beside(self, s_m: float, drift_rad: float) -> Pose:
         i = self._index(s_m)
-        (x, y), (x2, y2) = self.points[i], self.points[i + 1]
-        heading, over = math.atan2(y2 - y, x2 - x), s_m - self.along[i]
+        x, y, x2, y2 = self._places[2 * i : 2 * i + 4]
+        heading, over = math.atan2(y2 - y, x2 - x), s_m - self._stations[i]
         side = heading + math.pi / 2
         x, y = x + over * math.cos(heading), y + over * math.sin(heading)
         turned = heading + drift_rad + (math.pi if self.reverse else 0.0)
         if self.headings is not None:
             turned = float(np.interp(s_m, self.along, self.headings))
-        return Pose(float(x + self.offset_m * math.cos(side)), float(y + self.offset_m * math.sin(side)), turned)
+        return Pose(x + self.offset_m * math.cos(side), y + self.offset_m * math.sin(side), turned)
 
     def _index(self, s_m: float) -> int:
-        return int(np.clip(np.searchsorted(self.along, s_m, side="right") - 1, 0, len(self.points) - 2))
+        return min(max(bisect_right(self._stations, s_m) - 1, 0), len(self._stations) - 2)
 
     def _curvature(self, s_m: float) -> float:
         if not self.offset_m:

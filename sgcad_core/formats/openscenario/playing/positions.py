@@ -38,6 +38,7 @@ def position(node: XmlNode) -> PositionFunction:
     where, compiled = node.only(), POSITIONS.compile(node.only())
 
     def located(scene: Scene) -> LocatedPose:
+        where.spend("places found")
         try:
             return compiled(scene)
         except ValueError as fault:

@@ -6,8 +6,8 @@ Knows no XML beyond the node that is blamed for a fault.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.body import Body
@@ -115,6 +115,15 @@ class Scene:
         ahead, side = beside(way.points, pose)
         return OffsetCourse(way.points, ahead, shift=Transition(side, side, "step", 0.0), way=way)
 
-    def named(self, kind: str, ref: str) -> Iterator[ElementState]:
+    def named(self, kind: str, ref: str) -> list[ElementState]:
         """Storyboard elements of a kind by name or by path ("act::group::maneuver")."""
-        return (s for s in self.stages if s.kind == kind and f"::{s.path}".endswith(f"::{ref}"))
+        last = ref.rsplit("::", 1)[-1]
+        return [s for s in self._by_name.get((kind, last), ()) if f"::{s.path}".endswith(f"::{ref}")]
+
+    @cached_property
+    def _by_name(self) -> dict[tuple[str, str], list[ElementState]]:
+        """All stages by kind and own name; the storyboard is whole when the first condition asks."""
+        found: dict[tuple[str, str], list[ElementState]] = {}
+        for stage in self.stages:
+            found.setdefault((stage.kind, stage.path.rsplit("::", 1)[-1]), []).append(stage)
+        return found

@@ -41,6 +41,11 @@ class SignalPlan:
         self._controllers = [_controller(c, delays) for c in found]
         self._last: dict[str, str] = {}
 
+    @property
+    def phases(self) -> int:
+        """How many phases a step may look at."""
+        return sum(1 + len(controller.phases) for controller in self._controllers)
+
     def step(self, scene: Scene) -> None:
         """Set the states of this step; a state that an action set stands until the next phase."""
         for controller in self._controllers:

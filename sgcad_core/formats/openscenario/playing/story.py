@@ -253,6 +253,14 @@ class Storyboard:
             return self.stop_trigger.moment(scene)
         return scene.t_s if all(s.state == "completeState" for s, _ in self.stories) else None
 
+    def close(self) -> None:
+        """Note which edges never came, so that a reader knows why something did not start."""
+        acts = [act for _, acts in self.stories for act in acts]
+        events = [e for act in acts for group in act.groups for maneuver in group.maneuvers for e in maneuver.events]
+        of_acts = [trigger for act in acts for trigger in (act.start_trigger, act.stop_trigger)]
+        for trigger in (self.stop_trigger, *of_acts, *(event.trigger for event in events)):
+            trigger.close()
+
 
 def _stage(kind: str, path: str, scene: Scene) -> ElementState:
     stage = ElementState(kind, path)

@@ -103,12 +103,12 @@ class TimedMotion:
         Where the speed would become negative within a piece, the entity brakes evenly to its end and waits.
         """
         times, points, headings = self._vertices
-        rows, speed = [np.array([times[0], *points[0], headings[0]])], first_mps
+        vertices, speed = np.column_stack((times, points, headings)), first_mps
+        rows = [vertices[:1]]
         for i in range(len(times) - 1):
-            ends = np.column_stack((times, points, headings))[i : i + 2]
-            piece, speed = _eased_piece(ends, speed, dt_s)
-            rows += list(piece)
-        t, x, y, heading = np.array(rows).T
+            piece, speed = _eased_piece(vertices[i : i + 2], speed, dt_s)
+            rows.append(piece)
+        t, x, y, heading = np.vstack(rows).T
         return TimedMotion(t, np.column_stack((x, y)), heading, (self.first_step, dt_s))
 
     def pose(self, step: int) -> Pose:
@@ -143,11 +143,14 @@ def _eased_piece(ends: Floats, speed_mps: float, dt_s: float) -> tuple[Floats, f
         drives = 2 * way / speed_mps
     else:
         drives = span
-    t = np.linspace(0.0, drives, max(2, math.ceil(drives / dt_s) + 1))[1:]
+    seen = max(0.0, -float(first[0])), min(drives, MAX_S + dt_s - float(first[0]))  # what the clock sees of it
+    if seen[1] <= seen[0]:
+        return ends[1:], final
+    t = np.linspace(*seen, max(2, math.ceil((seen[1] - seen[0]) / dt_s) + 1))[0 if seen[0] else 1 :]
     share = (speed_mps * t + acceleration * t**2 / 2) / way
     rows = first + share[:, None] * (last - first)
     rows[:, 0] = first[0] + t
-    return (np.vstack((rows, last)) if drives < span - EPSILON else rows), final
+    return (np.vstack((rows, last)) if seen[1] < span - EPSILON else rows), final
 
 
 def _speeds(times_s: Floats, points: Floats, t_s: Floats) -> Floats:

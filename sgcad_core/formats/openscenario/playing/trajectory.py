@@ -52,6 +52,7 @@ def _timed(node: XmlNode, drawn: Drawn, timing: XmlNode, start_m: float) -> Foll
 
     def make(scene: Scene, actor: str) -> TimedMotion:
         line = drawn(scene, actor)
+        node.spend("vertices of trajectories", len(line.points))
         if line.times_s is None:
             raise node.fault("a vertex has no time", remedy=_UNTIMED)
         begin = scene.t_s if relative else 0.0
@@ -88,6 +89,7 @@ def _check_times(node: XmlNode) -> None:
 
 
 def _course(node: XmlNode, line: Line, start_m: float, closed: bool) -> OffsetCourse:
+    node.spend("vertices of trajectories", len(line.points))
     points, headings = line.points, line.headings
     if closed:
         points = np.vstack((points, points[:1]))

@@ -8,42 +8,25 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections import ChainMap
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from itertools import islice
+from typing import cast
 
 from sgcad_core.case.records import Finding, Severity
 from sgcad_core.errors import InvalidOutput, Unsupported
+from sgcad_core.formats.openscenario.reading.budget import TooMuch
 from sgcad_core.formats.openscenario.reading.expressions import evaluated
-from sgcad_core.formats.xml import Element, parse_xml
+from sgcad_core.formats.openscenario.reading.file_context import SOURCE, FileContext
+from sgcad_core.formats.xml import Element
 
-SOURCE = "openscenario"
 MAX_CHARACTERS = 20_000_000
 MAX_VALUE_CHARACTERS = 10_000
 """Longest attribute once its parameters are filled in."""
 MAX_PARAMETERS = 5_000
 MAX_NUMBER = 1e9
 _NAME = re.compile(r"\$(\w+)")
-
-
-class Catalogs(Protocol):
-    """Where catalog entries come from."""
-
-    def entry(self, reference: XmlNode) -> XmlNode:
-        """The entry that a <CatalogReference> names. Raises InvalidOutput."""
-
-
-@dataclass(eq=False)
-class FileContext:
-    """What all elements of one file share: the file's name, its catalogs and what is noted of it."""
-
-    file: str = ""
-    catalogs: Catalogs | None = None
-    notes: list[Finding] = field(default_factory=list)
-    strict: bool = True
-    """Whether what other players let pass with a warning is a fault (as for files that we write) or a note."""
-    depth: int = 0
-    """How many catalogs were opened on the way to this one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,9 +72,14 @@ class XmlNode:
 
     def note(self, what: str, value: str = "", remedy: str = "") -> None:
         """Keep a note beside the result: what is played otherwise than the file may mean it. Each place once."""
-        finding = self._found(what, value, remedy, "note")
-        if finding not in self.book.notes:
-            self.book.notes.append(finding)
+        self.book.notes.add(self._found(what, value, remedy, "note"))
+
+    def spend(self, what: str, count: float = 1) -> None:
+        """Take what something of this element costs from its file's budget. Raises InvalidOutput if it is too much."""
+        try:
+            self.book.budget.spend(what, count)
+        except TooMuch as fault:
+            raise self.fault(str(fault), remedy="make it smaller, or cut the file in parts") from fault
 
     # -------------------------------------------------------------- attributes
     @property
@@ -105,6 +93,14 @@ class XmlNode:
             return self.text(name, "")
         except InvalidOutput:
             return str(self.element.get(name))
+
+    def naming(self, name: str) -> str:
+        """An attribute that names a parameter, without the `$` that only belongs where one is used."""
+        raw = str(self.element.get(name) or "")
+        if not raw.startswith("$"):
+            return self.text(name)
+        self.doubt(f"attribute {name!r} begins with $", raw, "the name is taken without it")
+        return raw.lstrip("$")
 
     def has(self, name: str) -> bool:
         """Whether the attribute is there."""
@@ -178,12 +174,15 @@ class XmlNode:
     # -------------------------------------------------------------- elements
     def children(self, *tags: str) -> list[XmlNode]:
         """Child elements in order, of the given names if any are given."""
+        return list(self._children(*tags))
+
+    def _children(self, *tags: str) -> Iterator[XmlNode]:
         found = (e for e in self.element if isinstance(e.tag, str))
-        return [self.at(e) for e in found if not tags or e.tag in tags]
+        return (self.at(e) for e in found if not tags or e.tag in tags)
 
     def find(self, *tags: str) -> XmlNode | None:
         """The first child of one of these names."""
-        return next(iter(self.children(*tags)), None)
+        return next(self._children(*tags), None)
 
     def need(self, *path: str) -> XmlNode:
         """The element down a path of names. Raises InvalidOutput naming what is missing."""
@@ -191,7 +190,8 @@ class XmlNode:
         for tag in path:
             child = here.find(tag)
             if child is None:
-                raise here.fault(f"needs a <{tag}>", ", ".join(f"<{c.tag}>" for c in here.children()) or "nothing")
+                has = ", ".join(f"<{c.tag}>" for c in islice(here._children(), 20))
+                raise here.fault(f"needs a <{tag}>", has or "nothing")
             here = child
         return here
 
@@ -217,7 +217,7 @@ class XmlNode:
         if self.book.catalogs is None:
             remedy = "play the file from its folder (`sgcad play FILE`), or write the entry inline"
             raise self.unsupported("catalogs are read beside a file only", remedy)
-        entry = self.book.catalogs.entry(self)
+        entry: XmlNode = self.book.catalogs.entry(self)
         if entry.tag not in tags:
             raise self.fault(f"the catalog entry must be a {' or '.join(tags)}", f"<{entry.tag}>")
         return entry
@@ -228,12 +228,13 @@ class XmlNode:
         declared = self.find("ParameterDeclarations")
         if self.declared or (declared is None and not given):
             return self
-        scope, given = dict(self.scope), given or {}
+        given, own = given or {}, dict[str, str]()
+        scope = ChainMap(own, cast("dict[str, str]", self.scope))  # not copied: thousands of elements may declare some
         for entry in declared.children("ParameterDeclaration") if declared else ():
-            name = entry.text("name").lstrip("$")
-            scope[name] = given[name] if name in given else XmlNode(entry.element, scope, self.book).text("value", "")
-        if len(scope) > MAX_PARAMETERS:
-            raise self.fault(f"more than {MAX_PARAMETERS} parameters", str(len(scope)), "declare fewer")
+            name = entry.naming("name")
+            own[name] = given[name] if name in given else XmlNode(entry.element, scope, self.book).text("value", "")
+            if len(own) > MAX_PARAMETERS:
+                raise entry.fault(f"more than {MAX_PARAMETERS} parameters", remedy="declare fewer")
         return XmlNode(self.element, scope, self.book, declared=True)
 
     def _resolve(self, raw: str) -> str:
@@ -267,7 +268,8 @@ def read_root(xosc: str, given: Mapping[str, str] | None = None, book: FileConte
     """
     if len(xosc) > MAX_CHARACTERS:
         raise InvalidOutput(f"xosc: {len(xosc)} characters, at most {MAX_CHARACTERS}: write fewer vertices")
-    root = XmlNode(parse_xml(xosc, book.file if book and book.file else "xosc"), {}, book or FileContext())
+    book = book or FileContext()
+    root = XmlNode(book.read(xosc, "xosc"), {}, book)
     if root.tag != "OpenSCENARIO":
         raise root.fault("no OpenSCENARIO file", remedy="the root element is <OpenSCENARIO>")
     return root.scoped(given)

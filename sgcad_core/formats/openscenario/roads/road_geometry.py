@@ -19,24 +19,36 @@ MAX_ROAD_M = 20_000.0
 
 def reference_line(road: XmlNode) -> Floats:
     """(n, 4) s, x, y, heading along a road's reference line; headings are continuous. Raises InvalidOutput."""
-    parts = [_sampled(g) for g in road.need("planView").children("geometry")]
-    if not parts:
+    found = road.need("planView").children("geometry")
+    if not found:
         raise road.fault("has no geometry", remedy="add a <geometry> to its <planView>")
+    lengths = [_length(geometry) for geometry in found]
+    road.spend("geometries", len(found))
+    road.spend("points of roads", sum(map(_count, lengths)))
+    parts = [_sampled(geometry, length) for geometry, length in zip(found, lengths, strict=True)]
     rows = np.vstack(parts)
     rows = rows[np.argsort(rows[:, 0], kind="stable")]
     rows[:, 3] = np.unwrap(rows[:, 3])
     return rows
 
 
-def _sampled(geometry: XmlNode) -> Floats:
-    """(n, 4) s, x, y, heading of one <geometry>; s is the arc length scaled to the stated length."""
+def _length(geometry: XmlNode) -> float:
     length = geometry.number("length")
     if not 0 <= length <= MAX_ROAD_M:
         raise geometry.fault(f"length must lie within 0 and {MAX_ROAD_M:g} m", f"{length:g}")
+    return length
+
+
+def _count(length_m: float) -> int:
+    return max(2, math.ceil(length_m / STEP_M) + 1)
+
+
+def _sampled(geometry: XmlNode, length: float) -> Floats:
+    """(n, 4) s, x, y, heading of one <geometry>; s is the arc length scaled to the stated length."""
     shape = geometry.find(*_SHAPES) or geometry.only()
     if shape.tag not in _SHAPES:
         raise shape.unsupported(f"the player does not know <{shape.tag}> geometry")
-    share = np.linspace(0.0, 1.0, max(2, math.ceil(length / STEP_M) + 1))
+    share = np.linspace(0.0, 1.0, _count(length))
     u, v, turn = _SHAPES[shape.tag](shape, share, length)
     x, y, heading = (geometry.number(name) for name in ("x", "y", "hdg"))
     c, s = math.cos(heading), math.sin(heading)

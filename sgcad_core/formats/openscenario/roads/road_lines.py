@@ -6,10 +6,11 @@ Elevation is left out: played motion is plane. Formulas: ASAM OpenDRIVE 1.8, sec
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from itertools import accumulate
 
 import numpy as np
 
@@ -26,24 +27,15 @@ MAX_LANES = 100
 """Lanes on one side of a section."""
 
 
-class Cubic(NamedTuple):
-    """a + b d + c d² + d d³ with d counted from `begin_m`."""
-
-    begin_m: float
-    a: float
-    b: float
-    c: float
-    d: float
-
-
 @dataclass(frozen=True, eq=False)
 class Lane:
     """One lane of one section: its width or outer border over s, and the lanes it leads to."""
 
     node: XmlNode
     kind: str
-    widths: tuple[Cubic, ...]
-    borders: tuple[Cubic, ...]
+    widths: Floats
+    borders: Floats
+    """(n, 5) begin, a, b, c, d by rising begin: a + b d + c d² + d d³ with d counted from there."""
     before: int | None
     after: int | None
 
@@ -72,7 +64,7 @@ class LaneSection:
     def _outer(self, lane: int, inner: Floats, s_m: Floats) -> Floats:
         if (found := self.lanes.get(lane)) is None:
             return inner
-        if found.borders and not found.widths:
+        if len(found.borders) and not len(found.widths):
             return cubics(found.borders, s_m - self.begin_m)
         moved: Floats = inner + (1 if lane > 0 else -1) * cubics(found.widths, s_m - self.begin_m)
         return moved
@@ -90,11 +82,20 @@ class RoadLine:
         self.left_hand = node.text("rule", "RHT") == "LHT"
         self.sections = self._sections()
         self._offsets = _cubics(node.need("lanes").children("laneOffset"), "s")
+        begins = [section.begin_m for section in self.sections]
+        self._begins = list(accumulate(reversed(begins), min))[::-1]
+        """Where each section or a later one begins at the earliest: rising, in whatever order they stand."""
+        self._centers: dict[tuple[int, int], Floats] = {}
 
     @cached_property
     def reference(self) -> Floats:
         """(n, 4) s, x, y, heading along the reference line; headings are continuous."""
         return reference_line(self.node)
+
+    @cached_property
+    def _columns(self) -> Floats:
+        """(4, n) the same, so that a column lies in one piece."""
+        return np.ascontiguousarray(self.reference.T)
 
     def sense(self, lane: int) -> int:
         """1 where traffic drives a lane along s, -1 where against it."""
@@ -103,7 +104,7 @@ class RoadLine:
     def pose(self, s_m: float, t_m: float = 0.0) -> Pose:
         """Pose at road coordinates. Raises ValueError beyond the road."""
         self.check(s_m)
-        s, x, y, h = self.reference.T
+        s, x, y, h = self._columns
         heading = float(np.interp(s_m, s, h))
         here = float(np.interp(s_m, s, x)), float(np.interp(s_m, s, y))
         return Pose(here[0] - t_m * math.sin(heading), here[1] + t_m * math.cos(heading), heading)
@@ -135,10 +136,17 @@ class RoadLine:
 
     def center(self, index: int, lane: int) -> Floats:
         """(n, 5) s, x, y, reference heading and half width of a lane's center through one section, s rising."""
-        section = self.sections[index]
-        inner = self.reference[(self.reference[:, 0] > section.begin_m) & (self.reference[:, 0] < section.end_m)]
-        s = np.concatenate(([section.begin_m], inner[:, 0], [section.end_m]))
-        x, y, h = (np.interp(s, self.reference[:, 0], self.reference[:, i]) for i in (1, 2, 3))
+        if (index, lane) not in self._centers:
+            self._centers[index, lane] = self._center(self.sections[index], lane)
+        return self._centers[index, lane]
+
+    def _center(self, section: LaneSection, lane: int) -> Floats:
+        along = self._columns[0]
+        first, last = np.searchsorted(along, section.begin_m, "right"), np.searchsorted(along, section.end_m, "left")
+        s = np.concatenate(([section.begin_m], along[first:last], [section.end_m]))
+        self.node.spend("points of roads", len(s))
+        self.node.spend("edges of lanes", len(s) * abs(lane))
+        x, y, h = (np.interp(s, along, column) for column in self._columns[1:])
         inside = np.minimum(s, section.end_m - 1e-9)
         near, far = section.edges_t(lane, inside)
         t = self._offset(inside) + (near + far) / 2
@@ -151,7 +159,7 @@ class RoadLine:
     def section_index(self, s_m: float) -> int:
         """Index of the lane section there. Raises ValueError beyond the road."""
         self.check(s_m)
-        return max((i for i, part in enumerate(self.sections) if part.begin_m <= s_m + 1e-9), default=0)
+        return max(bisect_right(self._begins, s_m + 1e-9) - 1, 0)
 
     def check(self, s_m: float) -> None:
         """Raise ValueError beyond the road's ends (1 cm is forgiven)."""
@@ -188,14 +196,17 @@ def _lane(node: XmlNode) -> Lane:
     return Lane(node, node.text("type", "driving"), widths, borders, before, after)
 
 
-def _cubics(entries: Sequence[XmlNode], start: str) -> tuple[Cubic, ...]:
-    return tuple(Cubic(e.number(start), *(e.number(k, 0.0) for k in "abcd")) for e in entries)
+def _cubics(entries: Sequence[XmlNode], start: str) -> Floats:
+    rows = np.array([[e.number(start), *(e.number(k, 0.0) for k in "abcd")] for e in entries]).reshape(-1, 5)
+    found: Floats = rows[np.argsort(rows[:, 0], kind="stable")]
+    return found
 
 
-def cubics(entries: Sequence[Cubic], s_m: Floats) -> Floats:
-    """Piecewise cubics at s; 0 before the first entry."""
-    total = np.zeros_like(s_m)
-    for begin, a, b, c, cubic in entries:
-        d = s_m - begin
-        total = np.where(d >= -1e-9, a + d * (b + d * (c + d * cubic)), total)
-    return total
+def cubics(entries: Floats, s_m: Floats) -> Floats:
+    """Piecewise cubics, (n, 5) rows by rising begin, at s; 0 before the first entry."""
+    if not len(entries):
+        return np.zeros_like(s_m)
+    at = np.searchsorted(entries[:, 0], s_m + 1e-9, side="right") - 1
+    begin, a, b, c, cubic = entries[np.maximum(at, 0)].T
+    d = s_m - begin
+    return np.where(at >= 0, a + d * (b + d * (c + d * cubic)), 0.0)

@@ -6,6 +6,7 @@ Knows links and junctions; no geometry.
 from __future__ import annotations
 
 import heapq
+import math
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -40,12 +41,22 @@ class RoadLinks:
 
     def __init__(self, roads: Mapping[str, RoadLine], junctions: Mapping[str, XmlNode]) -> None:
         self._roads, self._junctions = roads, junctions
+        self._behind: dict[Step, list[Step]] = {}
+        self._routes: dict[tuple[Leg, str], dict[Leg, tuple[list[Leg], float]]] = {}
 
     # -------------------------------------------------------------- lanes
     def ahead(self, step: Step) -> list[Step]:
         """The lanes one may drive into behind a lane section: none at a dead end, several at a junction."""
+        if step not in self._behind:
+            self._behind[step] = found = self._ahead(step)
+            self._roads[step.road].node.spend("roads on a way", 1 + len(found))
+        return self._behind[step]
+
+    def _ahead(self, step: Step) -> list[Step]:
         line, inner = self._roads[step.road], step.section + step.sense
-        lane = line.sections[step.section].lanes[step.lane]
+        lane = line.sections[step.section].lanes.get(step.lane)
+        if lane is None:  # lane 0, the center line: nothing is linked to it
+            return []
         linked = lane.after if step.sense > 0 else lane.before
         if 0 <= inner < len(line.sections):
             return [Step(step.road, inner, linked, step.sense)] if linked in line.sections[inner].lanes else []
@@ -66,20 +77,27 @@ class RoadLinks:
 
     def _through(self, step: Step, junction: str) -> Iterator[Step]:
         """Along the junction's connections, and back through connecting roads that lead out where one drives in."""
-        node = self._junctions.get(junction)
-        for connection in node.children("connection") if node else []:
-            if connection.text("incomingRoad", "") == step.road:
-                for link in connection.children("laneLink"):
-                    contact = connection.text("contactPoint", "start")
-                    if link.whole("from") == step.lane:
-                        into = self._entered(_led_to(connection), contact, link.whole("to"))
-                        yield from [into] if into else []
+        for connection in self._incoming.get((junction, step.road), ()):
+            for link in connection.children("laneLink"):
+                contact = connection.text("contactPoint", "start")
+                if link.whole("from") == step.lane:
+                    into = self._entered(_led_to(connection), contact, link.whole("to"))
+                    yield from [into] if into else []
         for leg in self._connecting.get((step.road, END[step.sense]), ()):
             section = self._roads[leg.road].sections[0 if leg.sense > 0 else -1]
             for number, lane in section.lanes.items():
                 if (lane.before if leg.sense > 0 else lane.after) == step.lane:
                     index = 0 if leg.sense > 0 else len(self._roads[leg.road].sections) - 1
                     yield Step(leg.road, index, number, leg.sense)
+
+    @cached_property
+    def _incoming(self) -> dict[tuple[str, str], list[XmlNode]]:
+        """Connections by junction and incoming road."""
+        found: dict[tuple[str, str], list[XmlNode]] = defaultdict(list)
+        for junction, node in self._junctions.items():
+            for connection in node.children("connection"):
+                found[junction, connection.text("incomingRoad", "")].append(connection)
+        return dict(found)
 
     # -------------------------------------------------------------- roads
     @cached_property
@@ -122,22 +140,48 @@ class RoadLinks:
     def path(self, start: Leg, rest_m: float, goals: Mapping[Leg, float]) -> tuple[list[Leg], float] | None:
         """Shortest chain of roads to one of `goals` (leg -> way on it in metres) and the way there; None without.
 
-        `rest_m`: what lies ahead on the first road. Dijkstra over roads.
+        `rest_m`: what lies ahead on the first road.
         """
-        queue: list[tuple[float, tuple[Leg, ...]]] = [(rest_m, (start, leg)) for leg in self.onward(start)]
-        seen: set[Leg] = set()
-        heapq.heapify(queue)
-        while queue and len(seen) < MAX_VISITED:
-            way, legs = heapq.heappop(queue)
-            if legs[-1] in seen:
+        found = [(*self._route(start, goal.road).get(goal, ([], math.inf)), way) for goal, way in goals.items()]
+        legs, over, way = min(found, key=lambda one: one[1] + one[2], default=([], math.inf, 0.0))
+        return (legs, rest_m + over + way) if legs else None
+
+    def _route(self, start: Leg, road: str) -> dict[Leg, tuple[list[Leg], float]]:
+        """The shortest chains from a road onto another one, and the way over the roads between; remembered."""
+        if (start, road) not in self._routes:
+            self._routes[start, road] = self._searched(start, road)
+        return self._routes[start, road]
+
+    def _searched(self, start: Leg, road: str) -> dict[Leg, tuple[list[Leg], float]]:
+        """Dijkstra over roads; each knows the one before it only, so that long ways take no memory."""
+        queue: list[tuple[float, Leg, Leg]] = []
+        before: dict[Leg, Leg] = {}
+        found: dict[Leg, tuple[list[Leg], float]] = {}
+        self._spread(queue, 0.0, start)
+        while queue and len(before) < MAX_VISITED and len(found) < 2:
+            over, leg, last = heapq.heappop(queue)
+            if leg in before:
                 continue
-            seen.add(legs[-1])
-            if legs[-1] in goals:
-                return list(legs), way + goals[legs[-1]]
-            over = way + self._roads[legs[-1].road].length_m
-            for leg in self.onward(legs[-1]):
-                heapq.heappush(queue, (over, (*legs, leg)))
-        return None
+            before[leg] = last
+            if leg.road == road:
+                found[leg] = _chain(before, leg, start), over
+            self._spread(queue, over + self._roads[leg.road].length_m, leg)
+        return found
+
+    def _spread(self, queue: list[tuple[float, Leg, Leg]], over_m: float, leg: Leg) -> None:
+        onward = self.onward(leg)
+        self._roads[leg.road].node.spend("roads on a way", 1 + len(onward))
+        for further in onward:
+            heapq.heappush(queue, (over_m, further, leg))
+
+
+def _chain(before: Mapping[Leg, Leg], last: Leg, start: Leg) -> list[Leg]:
+    """From the start to a leg; the start may come again at the end of a ring."""
+    legs = [last]
+    while True:
+        legs.append(before[legs[-1]])
+        if legs[-1] == start:
+            return legs[::-1]
 
 
 def _led_to(connection: XmlNode) -> str:

@@ -10,14 +10,17 @@ from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.playing.timed_motion import angle_between
+from sgcad_core.formats.openscenario.reading.budget import Budget
 from sgcad_core.formats.openscenario.reading.elements import XmlNode
+from sgcad_core.formats.openscenario.reading.file_context import FileContext
+from sgcad_core.formats.openscenario.roads.lane_vertices import LaneVertices, vertices
 from sgcad_core.formats.openscenario.roads.road_lines import DRIVABLE, RoadLine
 from sgcad_core.formats.openscenario.roads.road_links import Leg, RoadLinks, Step
-from sgcad_core.formats.openscenario.roads.way import LanePlace, Route, Way, way_of
-from sgcad_core.formats.xml import parse_xml
+from sgcad_core.formats.openscenario.roads.way import LanePlace, Route, Way, cut, way_of
 from sgcad_core.geometry.plane import Floats, wrap_angle
 
 AHEAD_M = 1500.0
@@ -36,7 +39,7 @@ class RoadDistance(NamedTuple):
     left_m: float
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=2)
 def roads_of(xodr: str) -> XodrRoads:
     """The roads of a .xodr, with what was measured on them before; the last few files are remembered."""
     return XodrRoads(xodr)
@@ -47,11 +50,16 @@ class XodrRoads:
     there is instead; what is no OpenDRIVE raises InvalidOutput."""
 
     def __init__(self, xodr: str) -> None:
-        self._xodr = xodr
+        self._xodr, self._book = xodr, FileContext()
+
+    @property
+    def budget(self) -> Budget:
+        """What was spent on reading and measuring it."""
+        return self._book.budget
 
     @cached_property
     def _root(self) -> XmlNode:
-        root = XmlNode(parse_xml(self._xodr, "xodr"), {})
+        root = XmlNode(self._book.read(self._xodr, "xodr"), {}, self._book)
         if root.tag != "OpenDRIVE":
             raise root.fault("no OpenDRIVE file", remedy="the root element is <OpenDRIVE>")
         return root
@@ -106,34 +114,38 @@ class XodrRoads:
 
     def nearest(self, pose: Pose) -> LanePlace | None:
         """The drivable lane that holds a pose: of several the one that best points its way and is nearest."""
-        x, y, heading, s, which, half = self._centers
-        gap = np.hypot(x - pose.x_m, y - pose.y_m)
-        near = np.flatnonzero(gap < half + BESIDE_M + 1.0)
-        turned = np.abs(wrap_angle(heading[near] - pose.heading_rad))
+        lanes = self._centers
+        near, gap = self._near(lanes, pose, BESIDE_M + 1.0)
+        half = lanes.half_m[near]
+        turned = np.abs(wrap_angle(lanes.heading_rad[near] - pose.heading_rad))
         against = turned > np.pi / 2
         turned = np.where(against, np.pi - turned, turned)
-        beyond = np.maximum(gap[near] - half[near], 0.0)
-        cost = gap[near] + 4 * turned + 2 * against + 50 * beyond + np.where(turned > _TURNED_RAD, 1e9, 0.0)
+        beyond = np.maximum(gap - half, 0.0)
+        cost = gap + 4 * turned + 2 * against + 50 * beyond + np.where(turned > _TURNED_RAD, 1e9, 0.0)
         if not len(near) or cost.min() >= 1e9:
             return None
         best = int(near[cost.argmin()])
-        step = self._drivable[int(which[best])]
-        over, left = _local(Pose(float(x[best]), float(y[best]), float(heading[best])), pose)
-        if abs(left) > half[best] + BESIDE_M or abs(over) > half[best] + BESIDE_M:
+        step = self._drivable[int(lanes.lane[best])]
+        here = Pose(float(lanes.x_m[best]), float(lanes.y_m[best]), float(lanes.heading_rad[best]))
+        over, left = _local(here, pose)
+        if max(abs(left), abs(over)) > lanes.half_m[best] + BESIDE_M:
             return None
         section = self._roads[step.road].sections[step.section]
-        s_m = float(np.clip(s[best] + step.sense * over, section.begin_m, section.end_m))
+        s_m = float(np.clip(lanes.s_m[best] + step.sense * over, section.begin_m, section.end_m))
         return LanePlace(step.road, step.lane, s_m, left * step.sense)
 
     def covers(self, pose: Pose) -> bool:
         """Whether a point lies on a drivable lane, whatever its heading."""
-        x, y, _, _, _, half = self._centers
-        return bool((np.hypot(x - pose.x_m, y - pose.y_m) <= half + 0.05).any())
+        return len(self._near(self._centers, pose, 0.05)[0]) > 0
 
     def on_road(self, pose: Pose) -> bool:
         """Whether a point lies on a lane of any kind but "none": shoulders, borders and sidewalks are road."""
-        x, y, _, _, _, half = self._beside
-        return self.covers(pose) or bool((np.hypot(x - pose.x_m, y - pose.y_m) <= half + 0.05).any())
+        return self.covers(pose) or len(self._near(self._beside, pose, 0.05)[0]) > 0
+
+    def _near(self, lanes: LaneVertices, pose: Pose, beyond_m: float) -> tuple[NDArray[np.intp], Floats]:
+        found, gaps, looked_at = lanes.near(pose.x_m, pose.y_m, beyond_m)
+        self._root.spend("points looked at", 1000 + looked_at)
+        return found, gaps
 
     def lane_center(self, road: str, lane: int) -> Floats:
         """(n, 2) center of a lane in driving direction, through the sections that have it. Raises ValueError."""
@@ -167,10 +179,12 @@ class XodrRoads:
         step: Step | None = Step(place.road, line.section_index(place.s_m), place.lane, sense)
         parts, length, begin = list[tuple[Floats, tuple[str, int, int]]](), 0.0, place.s_m
         while step is not None and length <= AHEAD_M and len(parts) < MAX_ROADS_AHEAD:
-            part = self._ahead(step, begin)
+            part, along = cut(self._ahead(step, begin), AHEAD_M - length)
+            self._root.spend("points looked at", 5000 + len(part))
             parts.append((part, (step.road, step.lane, step.sense)))
-            length += float(np.hypot(*np.diff(part[:, 1:], axis=0).T).sum())
-            step, begin = self._next(step, route), -1.0
+            length += along
+            if length <= AHEAD_M:
+                step, begin = self._next(step, route), -1.0
         return way_of(parts, dead_end=step is None)
 
     def route(self, places: Sequence[LanePlace], sense: int | None = None) -> Route:
@@ -229,27 +243,21 @@ class XodrRoads:
         return self._of_kind(DRIVABLE.__contains__)
 
     @cached_property
-    def _centers(self) -> tuple[Floats, ...]:
+    def _centers(self) -> LaneVertices:
         """Of the drivable lanes; places in `_drivable`."""
         return self._vertices(self._drivable)
 
     @cached_property
-    def _beside(self) -> tuple[Floats, ...]:
+    def _beside(self) -> LaneVertices:
         """Of the other lanes that are road."""
         return self._vertices(self._of_kind(lambda kind: kind not in (*DRIVABLE, "none")))
 
-    def _vertices(self, lanes: Sequence[Step]) -> tuple[Floats, ...]:
-        """x, y, driving heading, s, index into the lanes and half width of every vertex of every lane."""
+    def _vertices(self, lanes: Sequence[Step]) -> LaneVertices:
         total = sum(s.end_m - s.begin_m for s in (self._roads[d.road].sections[d.section] for d in lanes))
         if total > MAX_LANES_M:
             raise self._root.fault(f"more than {MAX_LANES_M:g} m of lanes", f"{total:g}", "cut the network")
         parts = [self._roads[step.road].center(step.section, step.lane) for step in lanes]
-        if not parts:
-            return (np.empty(0),) * 6
-        turned = [np.where(step.sense > 0, 0.0, np.pi) for step in lanes]
-        rows = np.vstack([np.column_stack((p, np.full(len(p), i))) for i, p in enumerate(parts)])
-        heading = rows[:, 3] + np.concatenate([np.full(len(p), t) for p, t in zip(parts, turned, strict=True)])
-        return rows[:, 1], rows[:, 2], heading, rows[:, 0], rows[:, 5], rows[:, 4]
+        return vertices(parts, [step.sense < 0 for step in lanes])
 
     def _ahead(self, step: Step, begin_m: float) -> Floats:
         """(n, 3) s, x, y of a lane section in driving direction, from s = begin_m if not negative."""
@@ -264,6 +272,7 @@ class XodrRoads:
     def _next(self, step: Step, route: Route | None) -> Step | None:
         """The lane one drives into next: the route's, else the straightest."""
         options = self._links.ahead(step)
+        self._root.spend("points looked at", 150 * len(options))
         if route and len(options) > 1:
             options = self._onto(options, route.legs_after(step.road)) or options
         return min(options, key=self._turn, default=None)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.formats.openscenario.roads.road_links import Leg
-from sgcad_core.geometry.plane import Floats
+from sgcad_core.geometry.plane import Floats, arc_lengths
 
 
 class LanePlace(NamedTuple):
@@ -53,6 +53,13 @@ def way_of(parts: Sequence[tuple[Floats, tuple[str, int, int]]], dead_end: bool)
     apart = np.concatenate(([True], np.hypot(*np.diff(rows[:, 1:], axis=0).T) > 1e-3))
     rows, which = rows[apart], which[apart]
     return Way(rows[:, 1:], rows[:, 0], which, tuple(lane for _, lane in parts), dead_end)
+
+
+def cut(part: Floats, most_m: float) -> tuple[Floats, float]:
+    """(n, 3) s, x, y up to the first point behind a distance, and the length up to there, metres."""
+    along = arc_lengths(part[:, 1:])
+    end = int(np.searchsorted(along, most_m, side="right")) + 1
+    return part[:end], float(along[min(end, len(along)) - 1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,6 @@ import threading
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from scenariogeneration import xosc
@@ -32,13 +31,10 @@ from sgcad_core.formats.openscenario.writing.parts import (
     positions,
     rounded,
 )
+from sgcad_core.formats.openscenario.writing.versions import DEFAULT_VERSION, Version
 from sgcad_core.formats.openscenario.writing.vertices import held_at_standstill, vertex_rows
 from sgcad_core.records.specs import BehaviorSpec
 
-Version = Literal["1.0", "1.1", "1.2", "1.3"]
-DEFAULT_VERSION: Version = "1.2"
-Encoding = Literal["timed", "events"]
-DEFAULT_ENCODING: Encoding = "timed"
 END = "EndTime"
 """The file's parameter for people who cut a scenario short: when it stops, seconds."""
 _WRITING = threading.Lock()

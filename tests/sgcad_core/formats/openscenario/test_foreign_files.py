@@ -119,7 +119,7 @@ def test_stochastic_sets_are_drawn_by_the_files_own_seed(tmp_path):
         f"{uniform}</StochasticDistribution></Stochastic>"
     )
     file = distribution(tmp_path, inner)
-    first, second = variations(file), variations(file)
+    first, second = list(variations(file)), list(variations(file))
     assert first == second
     assert len({s.given["v"] for s in first}) == 5
     assert all(3 <= float(s.given["v"]) <= 4 for s in first)
@@ -127,7 +127,7 @@ def test_stochastic_sets_are_drawn_by_the_files_own_seed(tmp_path):
 
 def test_too_many_sets_are_refused_before_they_are_made(tmp_path):
     axes = "".join(SINGLE.replace('"v"', f'"v{i}"').replace('"20"', '"490"') for i in range(3))
-    with pytest.raises(InvalidOutput, match=r"makes 912673 parameter sets, at most 10000"):
+    with pytest.raises(InvalidOutput, match=r"makes at least 912673 parameter sets, at most 10000"):
         variations(distribution(tmp_path, f"<Deterministic>{axes}</Deterministic>"))
 
 

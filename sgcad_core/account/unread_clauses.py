@@ -1,0 +1,121 @@
+"""Sentences that tell something of the crash of which no reader made anything.
+
+Words of a kind of telling (lanes, sides, contacts, rollovers, motion) stand in a sentence, and neither a fact nor an
+act of the timeline of that kind points to it. What is told once more after it was read elsewhere is not unread.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from sgcad_core.account.inputs import ExecutedCase
+from sgcad_core.account.records import Item
+from sgcad_core.reading.language import of_role, rule
+from sgcad_core.reading.reading import Reading
+from sgcad_core.reading.text.normalise import Sentence
+from sgcad_core.reading.text.sentence_roles import STORY_ROLES, is_impact
+
+_VEHICLE = rule("common.vehicle")
+_SHOWN = 110
+"""Characters of a sentence that an item quotes."""
+_ABOUT = {
+    "lane": "a lane or a number of lanes", "side": "the sides of a contact", "roll": "a rollover",
+    "contact": "a contact", "motion": "what a vehicle did",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Read:
+    """What was read: names of facts and kinds of acts by the start of their sentence."""
+
+    facts: dict[int, set[str]]
+    acts: dict[int, set[str]]
+    first_contact: int
+    """Start of the sentence of the first contact; the text's length without one."""
+
+    @classmethod
+    def of(cls, reading: Reading) -> _Read:
+        """The index of a reading."""
+        read = cls({}, {}, min((a.start for a in reading.timeline if a.phase == "at" and a.start is not None),
+                               default=len(reading.narrative)))  # fmt: skip
+        for fact in reading.facts:
+            if fact.start is not None:
+                read.facts.setdefault(fact.start, set()).add(fact.field)
+        for act in reading.timeline:
+            if act.start is not None:
+                read.acts.setdefault(act.start, set()).add(act.kind)
+        return read
+
+    def has(self, start: int, *parts: str) -> bool:
+        """Whether a fact of that sentence has one of these words in its name."""
+        return any(part in name for name in self.facts.get(start, ()) for part in parts)
+
+
+def unread_clauses(made: ExecutedCase) -> Iterator[Item]:
+    """One item for each sentence of the story and kind of telling that was not read."""
+    read = _Read.of(made.reading)
+    for sentence in made.reading.sentences:
+        if sentence.role in STORY_ROLES or sentence.role == "opening":
+            for kind in _told(sentence):
+                if not _HEARD[kind](made.reading, sentence, read):
+                    yield _unread(made.reading, sentence, kind)
+
+
+def _told(sentence: Sentence) -> Iterator[str]:
+    """The kinds of telling in a sentence."""
+    for words in of_role("telling"):
+        if words.search(sentence.text):
+            yield str(words.yields["tells"])
+    if is_impact(sentence.text):
+        yield "contact"
+    if sentence.role in ("approach", "avoidance") and _VEHICLE.search(sentence.text):
+        yield "motion"
+
+
+def _unread(reading: Reading, sentence: Sentence, kind: str) -> Item:
+    words = reading.text_of(sentence)
+    quoted = words if len(words) <= _SHOWN else f"{words[: _SHOWN - 3]}..."
+    return Item(
+        kind="unread", field=f"text.{kind}", subject="", value=None, text=f"{_ABOUT[kind]} seems told: '{quoted}'",
+        reason="nothing was read of it", start=sentence.start, end=sentence.end,
+    )  # fmt: skip
+
+
+# ------------------------------------------------------------------ whether it was read
+def _lane(reading: Reading, sentence: Sentence, read: _Read) -> bool:
+    return sentence.start > read.first_contact or read.has(sentence.start, "lane", "approaches", "one_way", "divided")
+
+
+def _side(reading: Reading, sentence: Sentence, read: _Read) -> bool:
+    """Sides count where a contact is told; those of the first contact may be told in another sentence."""
+    if not is_impact(sentence.text) or read.has(sentence.start, "_area"):
+        return True
+    known = {name for names in read.facts.values() for name in names}
+    return {"contacts.0.striker_area", "contacts.0.struck_area"} <= known
+
+
+def _roll(reading: Reading, sentence: Sentence, read: _Read) -> bool:
+    return read.has(sentence.start, ".rolls") or any(course.rolls for course in reading.crash.courses.values())
+
+
+def _contact(reading: Reading, sentence: Sentence, read: _Read) -> bool:
+    """A contact of this sentence, or of the vehicles that it names."""
+    if reading.crash.near_crash or read.has(sentence.start, "contacts.", "impacts.", "others."):
+        return True
+    if "contact" in read.acts.get(sentence.start, ()):
+        return True
+    names = reading.named_in(sentence)
+    crash = reading.crash
+    pairs = [{c.striker, c.struck} for c in crash.contacts] + [{i.actor, i.other} for i in crash.impacts]
+    return len(names) > 1 and any(pair <= names for pair in pairs)
+
+
+def _motion(reading: Reading, sentence: Sentence, read: _Read) -> bool:
+    late = sentence.start > read.first_contact
+    return late or read.has(sentence.start, "vehicles.") or bool(read.acts.get(sentence.start))
+
+
+_HEARD: dict[str, Callable[[Reading, Sentence, _Read], bool]] = {
+    "lane": _lane, "side": _side, "roll": _roll, "contact": _contact, "motion": _motion,
+}  # fmt: skip

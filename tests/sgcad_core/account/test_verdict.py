@@ -1,0 +1,126 @@
+"""The one verdict: which of several things decides it, and what its sentence says."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from sgcad_core.account.notes import Note
+from sgcad_core.account.records import Disagreement, Item
+from sgcad_core.account.unread_clauses import unread_clauses
+from sgcad_core.account.verdict import contradictions, guesses, odd_driving, places, sentence_of, verdict_of
+from sgcad_core.case.records import ActorInfo, Trajectory
+from sgcad_core.reading.reading import read
+from tests.sgcad_core.planner.crash_scenes import network
+
+
+def item(kind: str, field: str = "vehicles.V1.heading") -> Item:
+    return Item(kind=kind, field=field, subject="V1", value="N", text=f"{kind} thing")  # type: ignore[arg-type]
+
+
+def made(text: str):
+    """A case of which only the reading matters."""
+    reading = read(text)
+    return SimpleNamespace(reading=reading, told={fact.field: fact for fact in reading.facts})
+
+
+DIFFER = Disagreement(
+    field="vehicles.V1.maneuver", subject="V1", kept="straight", kept_by="model", kept_confidence=0.5, other="stopped",
+    by="rules", confidence=0.9,
+)  # fmt: skip
+
+
+# ------------------------------------------------------------------ the word and the sentence
+@pytest.mark.parametrize(("kinds", "verdict"), [
+    (("has",), "whole"),
+    (("has", "assumed"), "whole"),
+    (("has", "guessed"), "guessed"),
+    (("has", "contradicts", "guessed"), "contradicts"),
+    (("unread", "contradicts", "guessed"), "unread"),
+    (("has", "lacks", "unread"), "lacking"),
+])  # fmt: skip
+def test_the_gravest_thing_decides(kinds, verdict) -> None:
+    assert verdict_of([item(kind) for kind in kinds], ()) == verdict
+
+
+def test_readers_that_differ_leave_no_green() -> None:
+    assert verdict_of([item("has")], (DIFFER,)) == "disputed"
+    assert "readers differ (vehicles.V1.maneuver)" in sentence_of("disputed", [item("has")], (DIFFER,))
+
+
+def test_a_sentence_of_motion_alone_is_named_and_costs_nothing() -> None:
+    assert verdict_of([item("has"), item("unread", "text.motion")], ()) == "whole"
+    assert verdict_of([item("has"), item("unread", "text.lane")], ()) == "unread"
+
+
+def test_the_sentence_counts_and_names() -> None:
+    said = sentence_of("lacking", [item("lacks"), item("has"), item("unread"), item("assumed")], ())
+    assert (
+        said == "lacks 1 of 2 things told (lacks thing); unread (unread thing): 1 of 2 things told are there, 1 assumed"
+    )
+    assert sentence_of("whole", [item("has")], ()).startswith("right as far as told: 1 of 1")
+
+
+# ------------------------------------------------------------------ what it rests on
+def test_a_contact_in_driving_that_nobody_tells_lacks() -> None:
+    note = Note(
+        kind="finding", subject="V2", text="[meeting] the declared contact comes about only by force at contacts[0]"
+    )
+    (found,) = odd_driving(made("V1 was northbound. V1 struck V2."), [note])
+    assert (found.kind, found.subject, found.reason) == (
+        "lacks",
+        "V2",
+        "the declared contact comes about only by force",
+    )
+    assert not [*odd_driving(made("V1 skidded and struck V2."), [note])]
+    assert not [*odd_driving(made("V1 struck V2."), [note.model_copy(update={"text": "[netconvert] a default"})])]
+
+
+@pytest.mark.parametrize(("x_m", "lacking"), [(1.75, []), (-1.75, ["V1"])])
+def test_driving_out_of_the_lanes_that_nobody_tells_costs_the_verdict(x_m, lacking) -> None:
+    t = 0.05 * np.arange(60)
+    track = Trajectory(
+        actor="V1", t_s=t, x_m=np.full(60, x_m), y_m=-150 + 15 * t, heading_rad=np.full(60, np.pi / 2),
+        speed_mps=np.full(60, 15.0),
+    )  # fmt: skip
+    case = made("V1 was northbound. V1 struck V2.")
+    case.graph, case.tracks = network("straight"), {"V1": track}
+    info = ActorInfo(id="V1", type="car", length_m=4.7, width_m=1.8, maneuver="straight")
+    case.scenario = SimpleNamespace(actors=(info,))
+    found = [*places(case)]
+    assert [one.subject for one in found] == lacking
+    assert verdict_of([item("has"), *found], ()) == ("lacking" if lacking else "whole")
+    assert {one.reason for one in found} <= {"3.0 s on the wrong side of the road before its contact"}
+
+
+@pytest.mark.parametrize(("text", "unread"), [
+    ("V1 was northbound in lane 2 of a four-lane road. The front of V1 struck the back of V2.", set()),
+    ("V1 was northbound. The front of V1 struck the back of V2. V1 then rolled over.", set()),
+    ("V1 was northbound. The front of V1 struck the back of V2. V3 was hit by flying components.", {"text.contact"}),
+    ("The front of V1 struck the back of V2 where the lane 3 marker was.", {"text.lane"}),
+])  # fmt: skip
+def test_what_seems_told_and_was_not_read_is_named(text, unread) -> None:
+    found = [*unread_clauses(made(text))]
+    assert {one.field for one in found} >= unread
+    assert {one.field for one in found} <= unread | {"text.motion", "text.side"}
+    for one in found:
+        assert 0 <= one.start < one.end <= len(text)
+        assert one.kind == "unread"
+
+
+def test_a_field_of_which_two_things_are_told_contradicts_itself() -> None:
+    found = [*contradictions(made("V1 was traveling north. V1 was traveling south. V1 struck V2, which was parked."))]
+    assert [one.field for one in found] == ["vehicles.V1.heading"]
+    assert not [*contradictions(made("V1 was traveling north. V1 struck V2, which was parked."))]
+
+
+@pytest.mark.parametrize(("text", "guessed"), [
+    ("V1 was northbound. V2 was eastbound. The front of V1 struck the left side of V2.", []),
+    ("V1 was northbound. The front of V1 struck the left side of V2.", ["vehicles.V2.heading"]),
+    ("V1 was northbound. The front of V1 struck the back of V2.", []),
+    ("V1 was northbound. The front of V1 struck the left side of V2, which was parked.", []),
+])  # fmt: skip
+def test_a_heading_that_nobody_tells_is_a_guess(text, guessed) -> None:
+    assert [one.field for one in guesses(made(text))] == guessed
