@@ -181,7 +181,7 @@ def _report(stage: Stage, key: str) -> Iterator[str]:
     shutil.copytree(settings.ROOT / "docs" / "demo" / "rear-end-on-arterial", inbox / "one")
     api, auth = f"http://127.0.0.1:{stage.ports['server:4200']}/api", health.key_of(key)
     deployed = httpx.get(f"{api}/deployments/name/inbox/inbox", auth=auth, timeout=ASK_S).json()
-    body = {"parameters": {"settle_s": 0, "wait_s": 0}, "state": {"type": "SCHEDULED"}}
+    body = {"parameters": {"settle_s": 0}, "state": {"type": "SCHEDULED"}}
     httpx.post(f"{api}/deployments/{deployed['id']}/create_flow_run", json=body, auth=auth, timeout=ASK_S)
     deadline = time.monotonic() + START_S
     while not list(inbox.glob("done/one-*/outcome.json")) and time.monotonic() < deadline:

@@ -38,6 +38,8 @@ LOOK_S = 0.5
 QUIET_LOOKS = 4
 """Number of equal looks in a row after which a page counts as painted."""
 SIZE = (1700, 950)
+LIST = "workflowType=machine_learning"
+"""Opens the list of runs as such, whatever the browser remembers."""
 TIDY = """document.querySelectorAll('button').forEach(
     b => /^(close|got it|dismiss)/i.test(b.ariaLabel || b.innerText) && b.click())"""
 """Closes what MLflow opens over and beside its pages for newcomers."""
@@ -95,11 +97,12 @@ def _of_arms(here: str, experiment: Any, arms: list[Any]) -> list[Page]:
     ids = quote(json.dumps([run.info.run_id for run in arms]))
     compare = f"/#/compare-runs?runs={ids}&experiments={quote(json.dumps([experiment.experiment_id]))}"
     share = f"{arms[0].data.metrics['collision_realised']:.3g}"
-    figures = ("collision_realised", "cases_generated", share)
+    figures = ("0_headline/06_generated", "account/whole", share)
     arms_only = quote("tags.`sgcad.level` = 'config'")
     return [
-        Page("runs", f"{here}/runs?searchFilter={arms_only}", (experiment.name, *names)),
-        Page("charts", f"{here}/runs?compareRunsMode=CHART&searchFilter={arms_only}", ("actors", "cases", *names)),
+        Page("runs", f"{here}/runs?{LIST}&searchFilter={arms_only}", (experiment.name, *names)),
+        Page("charts", f"{here}/runs?{LIST}&compareRunsMode=CHART&searchFilter={arms_only}", ("0_headline", *names)),
+        Page("table", f"{here}/runs/{arms[0].info.run_id}/artifacts/cases.json", ("outcome", "verdict", "config.yaml")),
         Page("compare", compare, (*names, "decoder", *figures)),
     ]
 
@@ -107,15 +110,15 @@ def _of_arms(here: str, experiment: Any, arms: list[Any]) -> list[Page]:
 def _of_case(client: Any, here: str, case: Any) -> list[Page]:
     run = f"{here}/runs/{case.info.run_id}"
     files = tuple(f.path for f in client.list_artifacts(case.info.run_id) if not f.path.startswith("."))
-    figures = ("collision_realised", "decoder", case.data.params["road_writer"])
+    figures = ("collision_realised", "road_writer", case.data.params["road_writer"])
     pages = [
         Page("case", run, (case.info.run_name, case.data.tags["sgcad.config"], *figures)),
         Page("files", f"{run}/artifacts", ("result.json", *files)),
     ]
     here = [case.info.experiment_id]
     calls = client.search_traces(locations=here, filter_string=f"attributes.run_id = '{case.info.run_id}'")
-    if calls:  # the run's own tab: a model call stands there only if it points to this run
-        pages.append(Page("traces", f"{run}/traces", ('"task"', f"{len(calls)} of {len(calls)}")))
+    if calls:  # the run's own tab: a trace stands there only if it points to this run
+        pages.append(Page("traces", f"{run}/traces", (calls[0].info.response_preview, "1 of 1")))
     return pages
 
 

@@ -13,9 +13,10 @@ BINS = 10
 RIDGE = 1.0
 """Strength with which the fit holds to the weights of no knowledge: as much as one report of each kind."""
 STEPS = 200
-SIGNS = (0, 1, -1, 1, 1)
-"""What weights may be, in the order of `fusion.terms`: a value of the model's that is more probable, better grounded or
-more likely told is no less likely right, and one against what the text tells outright no more (0: of either sign)."""
+SIGNS = (0, 1, -1, 1, 1, 1)
+"""What weights may be, in the order of `combiner.terms`: a value of the model's that is more probable, better grounded,
+more likely told or likelier by the learned reader is no less likely right, and one against what the text tells outright
+no more (0: of either sign)."""
 Floats = NDArray[np.float64]
 
 

@@ -22,7 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from pathlib import Path
 
-from flows.case.chain import ask_of
+from flows.case.steps import ask_of
 from flows.case_files.find_cases import cases_in
 from plugins.report_reader.degrade import LEVELS, Level, degrade
 from plugins.validator.evidence_gate import GROUPS, nats_of

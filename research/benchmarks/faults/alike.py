@@ -17,8 +17,8 @@ from typing import Any
 
 from flows.case_files import case_links
 
-TIMES = re.compile(rb'"seconds": ?(\{[^{}]*\}|[0-9.eE+-]+)|"shared": ?\[[^\]]*\]')
-"""How long something took, and which stages another arm had done by then: both go by who was first."""
+TIMES = re.compile(rb'"seconds": ?(\{[^{}]*\}|[0-9.eE+-]+)|"shared": ?\[[^\]]*\]|"(began|ended)_s": ?[0-9.eE+-]+')
+"""How long something took, when a step began, and which stages another arm had done by then."""
 SKIPPED = (".tracked", ".tracking", "links.json")
 """A tracker's marks hold when its database was made, links the ids of runs."""
 STAGED = re.compile(rb"sgcad-temp-inbox-\w+")
@@ -40,6 +40,12 @@ def _tree(folder: Path, place: Path) -> dict[str, str]:
 def _content(file: Path, place: Path) -> bytes:
     """A file's bytes without times and without the place where the trial lies."""
     return STAGED.sub(b"STAGED", TIMES.sub(b"", file.read_bytes())).replace(os.fsencode(place), b"PLACE")
+
+
+def same_file(one: Path, other: Path, inner: Path) -> bool:
+    """Whether a file of two places is there in both, and the same but for times and the places' names."""
+    both = (one / inner).is_file() and (other / inner).is_file()
+    return both and _content(one / inner, one) == _content(other / inner, other)
 
 
 def unlinked(folder: Path) -> list[str]:

@@ -18,6 +18,7 @@ from pathlib import Path
 
 import psutil
 
+from research.benchmarks.faults import meddling
 from research.benchmarks.faults.kills import AGAIN_S, Undisturbed, again
 from research.benchmarks.faults.places import Place
 
@@ -206,6 +207,16 @@ def _limit(process: psutil.Process) -> bool:
     return False
 
 
+def _meddled(meddle: Callable[[Undisturbed, Path], meddling.Seen]) -> Callable[[Undisturbed, Path], Happened]:
+    def happen(peace: Undisturbed, folder: Path) -> Happened:
+        said, faults, place = meddle(peace, folder)
+        if not faults:
+            place.remove()
+        return Happened(meddle.__name__, said, tuple(faults))
+
+    return happen
+
+
 DISASTERS: dict[str, Callable[[Undisturbed, Path], Happened]] = {
     f.__name__: f for f in (disk, readonly, locked, netconvert, worker, prefect, memory)
-}
+} | {f.__name__: _meddled(f) for f in (meddling.moved, meddling.edited, meddling.between)}

@@ -15,7 +15,8 @@ from pathlib import Path
 
 import psutil
 
-from flows.doctor import CHECKS, CheckFailed
+from flows.doctor import CHECKS
+from flows.service_checks import CheckFailed
 from research.benchmarks.faults.places import Place
 from research.benchmarks.faults.targets import Target
 

@@ -1,7 +1,8 @@
-"""What is killed: five commands on small inputs, and how their results are compared with an undisturbed run's."""
+"""What is killed: commands on small inputs, and how their results are compared with an undisturbed run's."""
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,7 @@ import yaml
 
 from research.benchmarks.faults import alike
 from sgcad_core import settings
+from sgcad_core.revision import read_edits
 
 TEXT = (
     "The crash occurred on a {lanes}-lane, undivided road with a speed limit of {limit} mph, in daylight. Vehicle #1, "
@@ -50,6 +52,10 @@ def reports(folder: Path, count: int = CASES) -> None:
         (case / "report.txt").write_text(_text(number), encoding="utf-8")
 
 
+def _case_folders() -> list[str]:
+    return [f"cases/report-{number:05d}" for number in range(CASES)]
+
+
 def _text(number: int) -> str:
     way = ("north", "east", "south", "west")[number % 4]
     return TEXT.format(lanes=("two", "four")[number % 2], limit=25 + 5 * (number % 8), way=way, number=number)
@@ -87,9 +93,53 @@ def _inbox_faults(ours: Path, theirs: Path) -> list[str]:
     told = alike.differences(ours, theirs, Path("out", "inbox"))
     done = len(list((ours / "inbox" / "done").glob("*/*.txt")))
     left = [p.name for p in (ours / "inbox").glob("*.txt")]
-    claims = [p.name for p in (ours / "inbox" / ".inbox" / "claims").glob("*")]
+    tries = [p.name for p in (ours / "inbox" / ".inbox" / "tries").glob("*")]
     told += [f"{done} of {CASES} reports under done/"] if done != CASES else []
-    return told + [f"{len(left)} reports and {len(claims)} claims left"] * bool(left or claims)
+    return told + [f"{len(left)} reports and {len(tries)} tries left"] * bool(left or tries)
+
+
+# ------------------------------------------------------------------ revise, play
+EDIT = "roads.N.lanes_forward=2"
+KEPT = ("result.json", "specs.json", "road.net.xml", "road.xodr", "scenario.xosc", "trajectories.csv", "metrics.json")
+
+
+def finished_case(folder: Path) -> None:
+    """A finished case in `out/template/c`, its report in `cases/c`."""
+    from flows.batch import config_folder
+    from flows.case.run_case import run_case
+    from flows.case_files.find_cases import Case, digest_of
+    from sgcad_core.config import load
+
+    shutil.copytree(settings.ROOT / "docs" / "demo" / "left-turn-at-signal", folder / "cases" / "c")
+    config, case = load(settings.CONFIGS / "template.yaml", ("tracker=none",)), Case(folder / "cases" / "c", "c")
+    config_folder.write(folder / "out" / config.name, config)
+    run_case(config, case, folder / "out", digest_of(case, config))
+
+
+def revision(folder: Path) -> list[str]:
+    """The command that changes a fact of it."""
+    return _sgcad("revise", "out/template/c", "--set", EDIT, "--who", "ann", "--why", "seen")
+
+
+def revision_faults(ours: Path, theirs: Path) -> list[str]:
+    """What is wrong with facts and results of a changed case."""
+    told = [f"{name} differs" for name in KEPT if not alike.same_file(ours, theirs, Path("out", "template", "c", name))]
+    edits = [(e.field, e.value) for e in read_edits(ours / "cases" / "c" / "facts.yaml")]
+    told += [] if edits == [("roads.N.lanes_forward", 2)] else [f"facts.yaml holds {edits}"]
+    lying = [f.name for f in (ours / "cases" / "c").iterdir() if f.suffix in (".journal", ".lock")]
+    return told + [f"{name} lies beside the report" for name in lying]
+
+
+def _scenario(folder: Path) -> None:
+    from research.benchmarks.fuzz.making import example
+
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in zip(("road.xodr", "scenario.xosc"), example()[2:4], strict=True):
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+def _played_faults(ours: Path, theirs: Path) -> list[str]:
+    return alike.differences(ours, theirs, "played")
 
 
 # ------------------------------------------------------------------ all
@@ -118,7 +168,7 @@ TARGETS = {
         Target(
             "evaluate",
             lambda folder: reports(folder / "cases"),
-            lambda folder: _sgcad("evaluate", "cases", "--out", "out"),
+            lambda folder: _sgcad("evaluate", "cases", "--config", "template", "--out", "out"),
             _results("", ("template",)),
         ),
         Target(
@@ -132,10 +182,17 @@ TARGETS = {
             _inbox,
             lambda folder: [
                 "-m", "flows.deploy.inbox.inbox", "inbox", "--config", "inbox.yaml", "--out", "out", "--settle-s", "0",
-                "--wait-s", "20", "--lease-s", "20", "--portion", "2",
             ],
             _inbox_faults,
         ),
+        Target(
+            "run",
+            lambda folder: reports(folder / "cases"),
+            lambda folder: _sgcad("run", *_case_folders(), "--config", "template", "--out", "out"),
+            _results("", ("template",)),
+        ),
+        Target("revise", finished_case, revision, revision_faults),
+        Target("play", _scenario, lambda folder: _sgcad("play", "scenario.xosc", "--out", "played"), _played_faults),
         Target("index", _nothing, lambda folder: _sgcad("index", "build", "--out", "knowledge"), _index_faults),
         Target("training", _nothing, _training, _training_faults),
     )

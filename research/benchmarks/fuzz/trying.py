@@ -42,12 +42,23 @@ def within(place: Path) -> Iterator[list[str]]:
 _watched: list[tuple[str, list[str]]] = []
 
 
+CHANGES = {"os.mkdir": 0, "os.remove": 0, "os.rmdir": 0, "os.chmod": 0, "os.truncate": 0, "os.rename": 1, "os.link": 1,
+           "os.symlink": 1}  # fmt: skip
+"""Audit events of changes of the file system, and which argument is the path that is changed."""
+
+
 def heed(event: str, arguments: tuple[object, ...]) -> None:
-    if event != "open" or not _watched or not isinstance(arguments[0], str | bytes):
+    """The audit hook: note what is opened for writing, made, renamed or removed outside the watched folder."""
+    if not _watched or (event != "open" and event not in CHANGES):
         return
-    path, flags = os.path.abspath(os.fsdecode(arguments[0])), arguments[2]
+    if event == "open" and not (isinstance(arguments[2], int) and arguments[2] & (os.O_WRONLY | os.O_RDWR)):
+        return
+    changed = arguments[CHANGES.get(event, 0)]
+    if not isinstance(changed, str | bytes):
+        return
     place, outside = _watched[-1]
-    if isinstance(flags, int) and flags & (os.O_WRONLY | os.O_RDWR) and not path.startswith((place, "/dev/null")):
+    path = os.path.abspath(os.fsdecode(changed))
+    if not path.startswith((place, "/dev/null")):
         outside.append(path)
 
 

@@ -11,9 +11,7 @@ first touch. `--cases` names every vehicle and pair that is counted.
 
 from __future__ import annotations
 
-import argparse
 import json
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from flows.case_files.case_folder import read_trajectories
+from research.benchmarks.run_tables import by_config, options_of, show
 from sgcad_core.case.records import Trajectory
 from sgcad_core.geometry.plane import Size
 from sgcad_core.kinds import actor_kind
@@ -133,18 +132,9 @@ def _overlaps(case: str, motions: tuple[Trajectory, ...], sizes: dict[str, Size]
         figures.lines.append(f"{case}: {', '.join(moving)} still moving at the end")
 
 
-def figures_of(config: Path) -> Figures:
-    """The counts of one config's folder."""
-    figures = Figures()
-    for file in sorted(config.glob("*/result.json")):
-        count(file.parent, figures)
-    return figures
-
-
 def table(runs: Path, configs: list[str], *, cases: bool = False) -> str:
     """The Markdown table of all configs in a folder, or of those named; with the cases counted below it."""
-    folders = [runs / c for c in configs] or sorted(p for p in runs.iterdir() if any(p.glob("*/result.json")))
-    found = {folder.name: figures_of(folder) for folder in folders}
+    found = by_config(runs, configs, Figures, count)
     head = HEAD.format(yaw=DRIVING.yaw_radps, slip=DRIVING.slip_deg, deep=100 * DEEP_M)
     lines = [head, "|" + "---|" * (head.count("|") - 1), *(_row(name, f) for name, f in found.items())]
     return "\n".join([*lines, *_named(found)] if cases else lines)
@@ -165,14 +155,8 @@ def _row(name: str, f: Figures) -> str:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("runs", type=Path, help="the folder given to --out")
-    parser.add_argument("configs", nargs="*", help="config names; default: all")
-    parser.add_argument("--cases", action="store_true", help="name every vehicle and pair that is counted")
-    options = parser.parse_args(arguments)
-    if not options.runs.is_dir():
-        raise SystemExit(f"{options.runs}: no such folder; give the one that `sgcad evaluate --out` wrote")
-    sys.stdout.write(table(options.runs, options.configs, cases=options.cases) + "\n")
+    options = options_of(__doc__, arguments, "name every vehicle and pair that is counted")
+    show(table(options.runs, options.configs, cases=options.cases))
 
 
 if __name__ == "__main__":

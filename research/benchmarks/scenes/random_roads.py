@@ -9,7 +9,7 @@ from typing import Any, get_args
 from sgcad_core.case.records import RoadNetwork, Scenario
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.formats.openscenario.writing.writer import Encoding
+from sgcad_core.formats.openscenario.writing.versions import Encoding
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.records.specs import (

@@ -8,12 +8,11 @@ itself, and what refinement makes of it. Counts are per file (AER, the paper's) 
 
 from __future__ import annotations
 
-import argparse
 import json
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from research.benchmarks.run_tables import options_of, show
 from sgcad_core.case.records import Finding
 from sgcad_core.metrics.generation import LAYERS, AttemptRecord, CaseRecord, Layer, Quality, quality
 
@@ -62,13 +61,8 @@ def _layers(counts: Mapping[Layer, int]) -> str:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("runs", type=Path, help="the folder given to --out")
-    parser.add_argument("configs", nargs="*", help="config names; default: all")
-    options = parser.parse_args(arguments)
-    if not options.runs.is_dir():
-        raise SystemExit(f"{options.runs}: no such folder; give the one that `sgcad evaluate --out` wrote")
-    sys.stdout.write(table(options.runs, options.configs) + "\n")
+    options = options_of(__doc__, arguments)
+    show(table(options.runs, options.configs))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """What a long batch takes per case: memory, open files, databases. `python -m research.benchmarks.services.growth
 [--cases 2000]`.
 
-One `sgcad evaluate` of the default config with MLflow and its own Prefect server over made reports (every tenth is a
+One `sgcad evaluate` of the config `template` with MLflow and its own Prefect server over made reports (every tenth is a
 bundled one under a new name). Every two seconds it is looked at: cases done, resident memory and open files of the
 command, of its worker processes and of Prefect's server, sizes of both databases. Each slope per case is fitted to the
 means of twenty equal spans of cases behind the first tenth, so that looks that follow each other do not count as many;
@@ -67,7 +67,7 @@ def _made(number: int) -> str:
 
 def batch(place: Place, count: int) -> Iterator[Look]:
     """Run it; a look every two seconds. Raises RuntimeError where it does not end as a batch does."""
-    command = ["-c", "from flows.cli import main; main()", "evaluate", "cases", "--out", "out"]
+    command = ["-c", "from flows.cli import main; main()", "evaluate", "cases", "--config", "template", "--out", "out"]
     process = place.start(command)
     while process.poll() is None:
         yield _look(place, process)

@@ -2,9 +2,9 @@
 
     python -m research.benchmarks.services.load [--cases 200] [--database postgresql://user@host/] [--address s3://bucket/place]
 
-Starts real servers on sqlite, or on two databases (`prefect`, `mlflow`) of a PostgreSQL server, and gives them
-what a study gives them a case: a task run, one more a step and an artifact, an MLflow run with figures and
-files, one object and one mark. Prefect's server is measured as a command and as `make up` start it, and by default.
+Starts real servers on sqlite, or on two databases (`prefect`, `mlflow`) of a PostgreSQL server, and gives them what a
+study gives them a case: a task run, one more a step and an artifact, an MLflow run, one object. Prefect's server is
+measured as a command and as `make up` start it, and by default.
 Prints processor seconds of server and client, wall seconds, and the server's delay."""
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import argparse
 import json
 import os
 import shutil
-import socket
 import subprocess
 import sys
 import tempfile
@@ -28,12 +27,14 @@ import httpx
 import psutil
 
 from flows.server import BULK, LEAN
+from research.benchmarks.services.free_port import free_port
 
 DEMO = Path(__file__).resolve().parents[3] / "docs" / "demo"
 START_S = 300.0
+MODULE = "research.benchmarks.services.load"
 SERVERS: Mapping[str, Mapping[str, str]] = {"of a command": LEAN, "of make up": BULK, "plain": {}}
 STEPS = (
-    "read", "retrieve[road]", "road[1]", "retrieve[scenario]", "scenario[1]", "simulate", "measure", "draw", "track",
+    "read", "retrieve[road]", "road[1]", "retrieve[scenario]", "scenario[1]", "simulate", "measure", "track",
 )  # fmt: skip
 
 
@@ -156,13 +157,6 @@ def spent(process: psutil.Process) -> float:
     return sum(sum(one.cpu_times()[:2]) for one in family)
 
 
-def free_port() -> int:
-    """A port that is free now."""
-    with socket.socket() as bound:
-        bound.bind(("127.0.0.1", 0))
-        return int(bound.getsockname()[1])
-
-
 def prefect_load(cases: int, database: str, place: Path, case: Path, kind: str) -> Load:
     """A case with its steps and artifact, on Prefect's server as one of SERVERS."""
     port = free_port()
@@ -195,8 +189,7 @@ def per_case(
     few = max(2, cases // 10)
     results = []
     for count in (few, cases):
-        module = "research.benchmarks.services.load"
-        client = [sys.executable, "-m", module, "--inside", inside, "--cases", str(count), *words]
+        client = [sys.executable, "-m", MODULE, "--inside", inside, "--cases", str(count), *words]
         results.append(run_client(server, client, environment))
     (s0, c0, w0, _), (s1, c1, w1, note) = results
     more = cases - few
@@ -229,25 +222,28 @@ def tell(note: str = "") -> None:
 def give_prefect(cases: int, case_folder: str) -> None:
     """A flow run with a task run, one a step and an artifact a case; ends when the server has all task runs."""
     from prefect import flow, task
+    from prefect.cache_policies import NO_CACHE
     from prefect.client.orchestration import get_client
     from prefect.events.worker import EventsWorker
     from prefect.runtime import flow_run, task_run
     from prefect.task_runners import ThreadPoolTaskRunner
 
-    from flows.batch.prefect_case_end import case_reporter
-    from flows.batch.prefect_case_task import silence_prefect
-    from flows.batch.prefect_tasks import StepRuns
-    from flows.case.step_log import Step
+    from flows.batch.case_task import silence_prefect
+    from flows.batch.prefect_case_end import TaskIds, case_reporter
 
     silence_prefect()
     result = json.loads((Path(case_folder) / "result.json").read_text(encoding="utf-8"))
+    plain: dict[str, Any] = {"persist_result": False, "cache_policy": NO_CACHE}
 
-    @task(persist_result=False)
-    def case(number: int) -> StepRuns:
-        graph = StepRuns(str(flow_run.id), str(task_run.id))
+    @task(task_run_name="{name}", **plain)
+    def step(name: str) -> str:
+        return name
+
+    @task(**plain)
+    def case(number: int) -> TaskIds:
         for name in STEPS:
-            graph.tell(Step(name, time.time() - 0.1, time.time()))
-        return graph
+            step(name)
+        return TaskIds(str(flow_run.id), str(task_run.id))
 
     @flow(name="load", task_runner=ThreadPoolTaskRunner(max_workers=2), persist_result=False)
     def load() -> str:
@@ -279,21 +275,25 @@ def give_mlflow(cases: int, case: str, uri: str) -> None:
         shutil.copytree(case, copy)
         tracker.log_case("load", {"config": "load"}, copy, result)
         shutil.rmtree(copy)
-    files = sum(1 for f in Path(case).rglob("*") if f.is_file())
-    tell(f"{files} files, {sum(f.stat().st_size for f in Path(case).rglob('*') if f.is_file()) / 1e6:.1f} MB a case")
+    sizes = [f.stat().st_size for f in Path(case).rglob("*") if f.is_file()]
+    tell(f"{len(sizes)} files, {sum(sizes) / 1e6:.1f} MB a case")
 
 
 def storage_load(cases: int, address: str, case: Path) -> Load:
-    """Pack, upload and mark a case; in this process, so the storage's own work shows only in the wall time."""
-    from flows.study.shared_storage import SharedFolder, packed
+    """Pack and upload a case; in this process, so the storage's own work shows only in the wall time."""
+    import fsspec
 
-    share = SharedFolder(address)
-    share.leave(case, ("load", "warm", "0" * 64), "generated", "run")
+    from flows.batch.remote.sent_case import packed
+
+    place, root = fsspec.core.url_to_fs(address)
+    place.makedirs(root, exist_ok=True)
     cpu, started = time.process_time(), time.perf_counter()
     for number in range(cases):
-        share.leave(case, ("load", f"{number:05d}", "0" * 64), "generated", "run")
-    used, wall = (time.process_time() - cpu) / cases, (time.perf_counter() - started) / cases
-    return Load("storage", 0.0, used, wall, f"{len(packed(case)) / 1e6:.2f} MB packed, {address.split(':')[0]}")
+        place.pipe_file(f"{root}/{number:05d}", packed(case))
+    used, wall = time.process_time() - cpu, time.perf_counter() - started
+    return Load(
+        "storage", 0.0, used / cases, wall / cases, f"{len(packed(case)) / 1e6:.2f} MB packed, {address.split(':')[0]}"
+    )
 
 
 if __name__ == "__main__":

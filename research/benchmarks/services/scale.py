@@ -3,8 +3,8 @@
     python -m research.benchmarks.services.scale
     python -m research.benchmarks.services.scale --rate 1e5 --model 3 --set mlflow=0.02 --servers starter=2
 
-Costs a case come from `research.benchmarks.services.stages` and `research.benchmarks.services.load`; what a card can do
-is computed from its data sheet and says so. The waiting is simulated (research/benchmarks/services/queueing.py).
+Costs a case come from the benchmarks `stages`, `load` and `dask_tasks` of this folder; what a card can do is computed
+from its data sheet and says so. The waiting is simulated (research/benchmarks/services/queueing.py).
 """
 
 from __future__ import annotations
@@ -83,14 +83,15 @@ class Costs:
     """Processor seconds a report at each part, measured as docs/scale.md says; the storage's are a round trip."""
 
     chain: float = 0.88
-    hand_in: float = 0.06
+    hand_in: float = 0.18
+    dask: float = 0.010
     storage: float = 0.13
     prefect: float = 0.231
     mlflow: float = 0.171
-    starter: float = 0.084
+    starter: float = 0.123
 
 
-SHARED = {"storage": 64, "prefect": 1, "mlflow": 1, "starter": 1}
+SHARED = {"storage": 64, "dask": 1, "prefect": 1, "mlflow": 1, "starter": 1}
 """Servers of the parts that all hosts share: requests at a time, processes."""
 
 

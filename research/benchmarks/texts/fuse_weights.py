@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flows.case.chain import ask_of
+from flows.case.steps import ask_of
 from research.benchmarks.texts import answer_cache
 from research.rows.coded_incidents import Incident
 from research.rows.coded_rows import WAYS, allowed, incidents_of_part
@@ -32,7 +32,8 @@ from sgcad_core.case.records import CrashReport
 from sgcad_core.config import Config
 from sgcad_core.config import load as load_config
 from sgcad_core.reading.reading import read
-from sgcad_core.reading.second_reader.fuse_gist import decide, terms
+from sgcad_core.reading.second_reader.combiner import terms
+from sgcad_core.reading.second_reader.fuse_gist import decide
 from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, RuleValues, alike, rule_values
 from sgcad_core.records.second_reader import Heard, Opinion, Value, Weights
 

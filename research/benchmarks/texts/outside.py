@@ -35,8 +35,8 @@ from research.rows.coded_incidents import by_hash
 from research.training.weight_fit import SIGNS, calibration_error, logistic, versus
 from sgcad_core.asking.second_opinion import load_weights
 from sgcad_core.errors import ConfigError
+from sgcad_core.reading.second_reader.combiner import FIGURES, FILLS, model_right, terms
 from sgcad_core.reading.second_reader.field_claims import KINDS, Claim, kind_of, rules_claim
-from sgcad_core.reading.second_reader.fuse_gist import FILLS, model_right, terms
 from sgcad_core.reading.second_reader.fuse_whole import agree, decided, fused_with_answer, same
 from sgcad_core.records.second_reader import DRAWN as OF_DRAWN
 from sgcad_core.records.second_reader import WHOLE, Opinion, Weights
@@ -73,9 +73,9 @@ def fit(some: Iterable[Case]) -> dict[str, Weights]:
 
 
 def _weights(rows: Sequence[tuple[float, ...]], marks: Sequence[float], agreed: Sequence[bool]) -> Weights:
-    differ, slope, told, nats, tells = (round(float(x), 3) for x in logistic(np.array(rows), np.array(marks), SIGNS))
+    figures = [round(float(x), 3) for x in logistic(np.array(rows), np.array(marks), SIGNS)]
     agree = (sum(agreed) + 0.9) / (len(agreed) + 1)
-    return Weights(differ=differ, slope=slope, told=told, nats=nats, tells=tells, agree=round(agree, 3))
+    return Weights(**dict(zip(FIGURES, figures, strict=True)), agree=round(agree, 3))
 
 
 def right(key: str, got: object, want: object) -> bool:

@@ -13,7 +13,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from flows.case.chain import ask_of
+from flows.case.steps import ask_of
 from research.benchmarks.texts import answer_cache
 from research.generator.report import Report
 from research.generator.writer_texts import Written, report_of

@@ -16,7 +16,7 @@ def drawn(weights: list[float], count: int, seed: int) -> tuple[np.ndarray, np.n
 
 
 def test_weights_of_many_rows_are_found_again() -> None:
-    wanted = [-0.5, 0.8, -1.2, 0.4, 0.3]
+    wanted = [-0.5, 0.8, -1.2, 0.4, 0.3, 0.6]
     assert logistic(*drawn(wanted, 20_000, 1)) == pytest.approx(wanted, abs=0.08)
     assert logistic(*drawn(wanted, 20_000, 1), SIGNS) == pytest.approx(wanted, abs=0.08)
 
@@ -32,10 +32,10 @@ def test_no_weight_has_a_sign_that_it_may_not_have(weights: list[float], seed: i
 
 
 def test_a_column_of_the_wrong_sign_leaves_the_others_as_if_it_were_not_there() -> None:
-    rows, marks = drawn([0.2, 1.0, 0.9, 0.5, 0.4], 500, 3)
+    rows, marks = drawn([0.2, 1.0, 0.9, 0.5, 0.4, 0.6], 500, 3)
     found = logistic(rows, marks, SIGNS)
     assert found[2] == 0
-    assert found[[0, 1, 3, 4]] == pytest.approx(logistic(rows[:, [0, 1, 3, 4]], marks), abs=1e-6)
+    assert found[[0, 1, 3, 4, 5]] == pytest.approx(logistic(rows[:, [0, 1, 3, 4, 5]], marks), abs=1e-6)
 
 
 def test_where_no_weight_may_have_its_sign_there_is_none() -> None:
@@ -45,7 +45,7 @@ def test_where_no_weight_may_have_its_sign_there_is_none() -> None:
 
 
 def test_without_rows_the_probability_is_believed() -> None:
-    assert logistic(np.zeros((0, 5)), np.zeros(0), SIGNS).tolist() == [0, 1, 0, 0, 0]
+    assert logistic(np.zeros((0, 6)), np.zeros(0), SIGNS).tolist() == [0, 1, 0, 0, 0, 0]
 
 
 def test_calibration_error_and_pairs() -> None:

@@ -24,7 +24,7 @@ def test_what_is_killed_three_times_is_finished_the_next_time(tmp_path):
 def test_only_times_and_the_place_are_left_out_of_a_comparison(tmp_path):
     for name, seconds, status in (("a", 1.5, "x"), ("b", 2.5, "x"), ("c", 1.5, "y")):
         (folder := tmp_path / name / "out").mkdir(parents=True)
-        times = f'"seconds": {{"road": {seconds}}}, "shared": ["{name}"]'
+        times = f'"seconds": {{"road": {seconds}}}, "shared": ["{name}"], "began_s": {seconds}, "ended_s": 1e9'
         told = f'{{{times}, "status": "{status}", "at": "{tmp_path / name}"}}'
         (folder / "result.json").write_text(told)
     (tmp_path / "c" / "out" / "more").write_text("")

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from research.benchmarks.run_tables import by_config
 from research.benchmarks.scenes import motion
-from research.benchmarks.scenes.motion import figures_of, table
+from research.benchmarks.scenes.motion import Figures, count, table
 
 TEXT = (
     "V1 was traveling north at 20 mph. V2 was traveling north. The front of V1 struck the back of V2. It was dry and "
@@ -37,7 +38,7 @@ def write_case(root: Path, name: str, *, speed: float = 20 * 0.44704, spin: floa
 
 def test_a_calm_case_counts_nothing(tmp_path: Path) -> None:
     write_case(tmp_path, "calm")
-    f = figures_of(tmp_path / "template")
+    f = by_config(tmp_path, ["template"], Figures, count)["template"]
     assert (f.cases, f.moving, f.realised, f.declared) == (1, 1, 1, 1)
     assert (f.lateral, f.yaw, f.slip, f.rest, f.deep, f.unrested) == (0,) * 6
     assert (f.reached, f.stated) == (1, 1)
@@ -48,7 +49,7 @@ def test_each_fault_is_counted_once_and_named(tmp_path: Path) -> None:
     write_case(tmp_path, "a", spin=0.5)
     write_case(tmp_path, "b", ends_m=27.0)
     write_case(tmp_path, "c", speed=12.0)
-    f = figures_of(tmp_path / "template")
+    f = by_config(tmp_path, ["template"], Figures, count)["template"]
     assert (f.yaw, f.slip, f.lateral) == (1, 1, 0)
     assert (f.rest, f.deep) == (1, 1)
     assert (f.reached, f.stated) == (2, 3)
@@ -61,7 +62,7 @@ def test_each_fault_is_counted_once_and_named(tmp_path: Path) -> None:
 def test_a_case_without_motion_is_a_case(tmp_path: Path) -> None:
     write_case(tmp_path, "calm")
     (tmp_path / "template" / "calm" / "trajectories.csv").unlink()
-    f = figures_of(tmp_path / "template")
+    f = by_config(tmp_path, ["template"], Figures, count)["template"]
     assert (f.cases, f.moving) == (1, 0)
 
 

@@ -31,7 +31,7 @@ def test_a_larger_batch_never_costs_a_report_more(batch, bytes_each, prompt):
 
 
 def test_a_part_with_too_little_is_named():
-    costs = Costs(prefect=0.001, mlflow=1.0, storage=0.001, starter=0.001)
+    costs = Costs(prefect=0.001, mlflow=2.0, storage=0.001, starter=0.001)
     assert "mlflow: cannot keep up" in scale.table(1.5 * DAY_S, costs, reports=2000)
     assert "mlflow: gives way first" in scale.table(0.1 * DAY_S, costs, reports=2000)
 

@@ -13,7 +13,7 @@ from research.rows.coded_incidents import Incident, is_blind
 from research.rows.coded_rows import allowed, incidents_of_part, row
 from research.rows.partial_labels import load
 from research.training.weight_fit import calibration_error
-from sgcad_core.reading.second_reader.fuse_gist import model_right
+from sgcad_core.reading.second_reader.combiner import model_right
 from sgcad_core.reading.second_reader.seven_question_gist import RuleValues
 from sgcad_core.records.second_reader import Heard
 

@@ -1,6 +1,6 @@
 """Learns where the rules err from coded incident reports, and prints what that would change in reports set apart.
 
-    python -m research.training.train_learned_reader POOL.jsonl [--out \
+    python -m research.training.readers.train_learned_reader POOL.jsonl [--out \
         sgcad_core/reading/second_reader/learned_reader.npz] [--takes 0.6] [--folds 5]
 
 Learned are the two linear readers and the judge of `sgcad_core.reading.second_reader.learned_reader`, on the training
@@ -69,7 +69,7 @@ class Readers(NamedTuple):
         _, whole, bias, alone, bias_alone = self.fields[key]
         by_words = _matrix([one.words for one in rows], self.word_hashes, norm=True)
         both = hstack([by_words, _matrix([one.readings for one in rows], self.reading_hashes)]).tocsr()
-        return _softmax(both @ whole + bias), _softmax(by_words @ alone + bias_alone)
+        return softmax(both @ whole + bias), softmax(by_words @ alone + bias_alone)
 
 
 def taught(rows: Sequence[Row]) -> Readers:
@@ -83,7 +83,7 @@ def taught(rows: Sequence[Row]) -> Readers:
         targets = [target(rows[i], key) for i in at]
         values = tuple(sorted({value for some in targets for value in some}, key=str))
         may = np.array([[value in some for value in values] for some in targets])
-        fields[key] = values, *_fit(both[at], may, L2), *_fit(by_words[at], may, L2_ALONE)
+        fields[key] = values, *multinomial(both[at], may, L2), *multinomial(by_words[at], may, L2_ALONE)
     return Readers(word_hashes, reading_hashes, fields)
 
 
@@ -101,26 +101,27 @@ def _matrix(rows: Sequence[Iterable[str]], hashes: NDArray[np.uint32], norm: boo
     return csr_matrix((data, np.concatenate(at), ends), shape=(len(rows), len(hashes)))
 
 
-def _fit(seen: Any, may: NDArray[np.bool_], l2: float) -> tuple[Floats, Floats]:
+def multinomial(seen: Any, may: NDArray[np.bool_], l2: float, steps: int = STEPS) -> tuple[Floats, Floats]:
     """Weights (features, values) and biases that make the allowed values likely."""
     count, width = may.shape[1], seen.shape[1]
     turned = seen.T.tocsr()
 
     def loss(at: Floats) -> tuple[float, Floats]:
         weights, bias = at[:-count].reshape(width, count), at[-count:]
-        p = _softmax(seen @ weights + bias)
+        p = softmax(seen @ weights + bias)
         inside = np.where(may, p, 0.0)
         mass = np.maximum(inside.sum(1, keepdims=True), 1e-300)
         slope = p - inside / mass
         grown = np.concatenate([(turned @ slope + l2 * weights).ravel(), slope.sum(0)])
         return float(-np.log(mass).sum() + l2 / 2 * (weights**2).sum()), grown
 
-    found = minimize(loss, np.zeros((width + 1) * count), jac=True, method="L-BFGS-B", options={"maxiter": STEPS}).x
+    found = minimize(loss, np.zeros((width + 1) * count), jac=True, method="L-BFGS-B", options={"maxiter": steps}).x
     weights: Floats = found[:-count].reshape(width, count)
     return weights, found[-count:]
 
 
-def _softmax(scores: Floats) -> Floats:
+def softmax(scores: Floats) -> Floats:
+    """Shares of every row."""
     powers: Floats = np.exp(scores - scores.max(1, keepdims=True))
     shares: Floats = powers / powers.sum(1, keepdims=True)
     return shares

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from research.rows.reader_rows import Row, row, target
-from research.training import train_learned_reader
-from research.training.train_learned_reader import Judge, judged, learn, taught
+from research.training.readers import train_learned_reader
+from research.training.readers.train_learned_reader import Judge, judged, learn, taught
 from sgcad_core.reading.second_reader import learned_reader
 from tests.research.benchmarks.texts.test_fuse_weights import pool
 

@@ -1,0 +1,1 @@
+"""Hostile input by the thousand, one module a kind: `python -m research.benchmarks.attack`."""

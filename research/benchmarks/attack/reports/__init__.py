@@ -1,0 +1,1 @@
+"""Kinds of attack on the readers of reports: texts, PDFs, pictures."""

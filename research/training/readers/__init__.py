@@ -1,0 +1,1 @@
+"""Trainers of the linear second readers. Know no network."""
