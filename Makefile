@@ -8,7 +8,7 @@ export HF_HUB_OFFLINE := 1
 SIDE_BY_SIDE = -n $(or $(WORKERS),logical) --maxprocesses 8 --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-slow test-fast test-thorough test-hosts up down check-deploy lint bench bench-decode bench-faults train-mini qc clean pages
+.PHONY: help setup demo test test-slow test-fast test-thorough test-hosts up down check-deploy lint bench bench-decode bench-faults bench-attack train-mini qc clean pages
 .PHONY: docs docs-serve lock licenses sbom
 
 help: ## list the targets
@@ -57,6 +57,9 @@ bench-decode: setup ## context-aware decoding against greedy, in ratios
 bench-faults: setup ## kill -9 at random points, full disks, locked databases; then the same again (KILLS=100 SEED=1)
 	$(BIN)/python -m research.benchmarks.faults --kills $(or $(KILLS),100) --seed $(or $(SEED),1)
 
+bench-attack: setup ## hostile texts, pictures, PDFs, plugins and desk requests; kills, disasters (COUNT=10000 KINDS=picture,pdf)
+	$(BIN)/python -m research.benchmarks.attack $(if $(COUNT),--count $(COUNT)) $(if $(KINDS),--kinds "$(KINDS)")
+
 train-mini: setup ## train the embedded model (DEVICE=cpu|cuda BUDGET=seconds); goes on from its checkpoint
 	$(BIN)/python -m research.training.train --out runs/training --device $(or $(DEVICE),cpu) --budget $(or $(BUDGET),3600)
 
@@ -95,7 +98,7 @@ pages: setup ## headless Chromium looks at MLflow's pages (DATABASE=runs/mlflow.
 clean: ## remove environments and caches, never results
 	rm -rf $(VENV) .venv-qc .venv-tools site .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 
-test-hosts: setup ## a study on two hosts that lose network and power (Linux, root, PostgreSQL and iproute2; else skipped)
+test-hosts: setup ## a study on two Dask workers that lose network and power (Linux, root, PostgreSQL and iproute2; else skipped)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint deploy/constraints.txt -e '.[dev,hosts]' 'moto[s3]>=5.1'
 	$(BIN)/python -m tests.hosts.run
 

@@ -37,7 +37,7 @@ def test_the_page_installs_and_runs(environment, tmp_path):
 
 
 def test_the_table_names_every_built_in_plugin():
-    from sgcad_core.registry import KINDS, catalogue
+    from sgcad_core.entry_points import KINDS, catalogue
 
     for kind in KINDS:
         row = next(line for line in PAGE.splitlines() if line.startswith(f"| {kind} |"))

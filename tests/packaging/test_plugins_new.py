@@ -7,8 +7,8 @@ import yaml
 
 from flows import scaffolding
 from sgcad_core import settings
+from sgcad_core.entry_points import KINDS
 from sgcad_core.errors import ConfigError
-from sgcad_core.registry import KINDS
 from tests.packaging.conftest import ROOT
 
 

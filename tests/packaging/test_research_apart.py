@@ -9,7 +9,7 @@ from tests.packaging.conftest import ROOT
 
 PRODUCT = ("sgcad_core", "plugins", "flows", "deploy")
 OWN = {"research", *PRODUCT}
-PACKAGES = {"PIL": "pillow", "yaml": "pyyaml", "psycopg2": "psycopg2-binary"}
+PACKAGES = {"prefect_dask": "prefect-dask", "PIL": "pillow", "yaml": "pyyaml", "psycopg2": "psycopg2-binary"}
 """Packages that are installed under other names than they are imported by."""
 OF_PREFECT = {"asyncpg", "websockets"}
 """Dependencies of Prefect."""
