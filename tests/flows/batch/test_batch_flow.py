@@ -28,12 +28,19 @@ def work(tmp_path, reports, under_server):
     return run
 
 
-def task_runs(server, flow_run):
-    """Task runs of a flow run by name, each a list; a server that stays writes them once a second."""
-    time.sleep(2)
+def task_runs(server, flow_run, seconds=60):
+    """Task runs of a flow run by name, each a list, once two looks see the same: a server writes them once a second."""
     body = {"flow_runs": {"id": {"any_": [flow_run]}}}
+    deadline, before = time.monotonic() + seconds, None
+    while time.monotonic() < deadline:
+        time.sleep(1.5)
+        runs = httpx.post(f"{server.address}/task_runs/filter", json=body, timeout=30).json()
+        seen = sorted((run["id"], run["state_type"], run["run_count"]) for run in runs)
+        if seen == before and not {"PENDING", "SCHEDULED", "RUNNING"} & {run["state_type"] for run in runs}:
+            break
+        before = seen
     found = {}
-    for run in httpx.post(f"{server.address}/task_runs/filter", json=body, timeout=30).json():
+    for run in runs:
         found.setdefault(run["name"], []).append(run)
     return found
 

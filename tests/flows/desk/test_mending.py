@@ -59,7 +59,7 @@ def test_a_wrong_edit_is_refused_with_its_reason_and_changes_nothing(page, key, 
     for field, value, reason in (
         ("roads.N.lanes_forward", 99, "integer from"),
         ("roads.XX.lanes_forward", 2, "there is no"),
-        ("vehicles.V2.start_lane", 7, "lane"),
+        ("vehicles.V2.start_lane", 99, "lane"),
         ("vehicles.V1.maneuver", "fly", "one of"),
         ("roads.N.lanes_forward", "!!int ''", "is no value"),
         ("roads.N.lanes_forward", "[" * 5000, "is no value"),
