@@ -20,6 +20,7 @@ from sgcad_core.metrics.labels.course_labels import POINT_DEG, CourseLabel, Rest
 from sgcad_core.metrics.labels.observed_crash import VehicleMotion
 from sgcad_core.metrics.lane_places import lane_steps
 from sgcad_core.metrics.rest_error import attitude_of
+from sgcad_core.metrics.road_departure import left_road
 from sgcad_core.metrics.told_lanes import LANE_WORDS, TURN_LANES, ToldLane, position, told_lane
 from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
 from sgcad_core.records.facts import Fact, Value
@@ -29,6 +30,8 @@ _HEADING_RAD = math.radians(45.0 + 22.5)
 _LIES = {"wheels": "wheels", "roof": "roof", "left": "left side", "right": "right side"}
 _STANDS_MPS = 1.0
 """Below it a vehicle stands, as reports have it."""
+_ALONG = math.sin(math.radians(20.0))
+"""Sine of the angle to its way below which a compass word tells no side of it."""
 _SPIN_DEG = 60.0
 """Tolerance of a stated angle of spin: reports give quarter turns."""
 
@@ -157,6 +160,19 @@ def _rolls(made: ExecutedCase, who: str, value: Value) -> Comparison:
     return Comparison(most >= math.pi / 2 - 1e-3, round(math.degrees(most)), "it stays on its wheels")
 
 
+def _departs(made: ExecutedCase, who: str, value: Value) -> Comparison:
+    """Whether a vehicle is off the road at its first contact, on the told side; any side fits one along its way."""
+    poses = VehicleMotion(made.crash, who).before
+    seen = left_road(made.graph, poses, made.sizes[who][0])
+    if seen is None:
+        return Comparison(False, None, "it is on the road at its first contact")
+    wanted = value
+    if value in COMPASS:
+        across = math.sin(angle_of(value) - float(poses[0, 2]))
+        wanted = "either" if abs(across) < _ALONG else "left" if across > 0 else "right"
+    return Comparison(wanted in ("either", seen), seen, f"it leaves the road on the {seen}")
+
+
 def _joins(road_name: Callable[[ExecutedCase, str], str | None]) -> Judge:
     """A comparison of the kind of road that a vehicle comes from or enters."""
 
@@ -190,6 +206,6 @@ def _exit(made: ExecutedCase, who: str) -> str | None:
 
 _JUDGES: dict[str, Judge] = {
     "heading": _heading, "lane": _lane, "lane_word": _lane, "spin_deg": _spin_deg, "rest.side": _side,
-    "rest.attitude": _attitude, "from_stop": _from_rest, "rolls": _rolls, "origin": _joins(_start),
+    "rest.attitude": _attitude, "from_stop": _from_rest, "rolls": _rolls, "departs": _departs, "origin": _joins(_start),
     "target": _joins(_exit),
 }  # fmt: skip

@@ -14,6 +14,7 @@ from sgcad_core.kinds import JUNCTIONS, ROUNDABOUT
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.text.normalise import NUMBERS, Sentence
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES, is_impact
+from sgcad_core.records.course import CourseTold
 from sgcad_core.roads.compiled_facts import junctions
 
 _CALLED, _COUNTED, _FURTHER, _ANIMAL, _MANY_LEGS, _INTRODUCED = (
@@ -139,7 +140,8 @@ def _deeds(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     if not vehicles or sentence.start > _first_told(made):
         return
     done = {str(word) for v in vehicles for word in (v.maneuver, v.meant) if word}
-    done |= {"departing_road"} if made.reading.lost_control else set()
+    leaves = any(made.reading.crash.courses.get(v.id, CourseTold()).departs for v in vehicles)
+    done |= {"departing_road"} if made.reading.lost_control or leaves else set()
     for deed, words in _told_deeds(sentence.text):
         if not any(made_so.startswith(_SATISFIED_BY.get(deed, (deed,))) for made_so in done):
             who = " and ".join(v.id for v in vehicles)

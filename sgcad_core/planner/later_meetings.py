@@ -16,9 +16,10 @@ from sgcad_core.planner.actor_plan import Role, Twist, is_standing
 from sgcad_core.planner.aftermath.struck_objects import standing_track
 from sgcad_core.planner.aftermath.told_order import ToldOrder, other_of, pair_of
 from sgcad_core.planner.encounter.encounter_search import Meeting, find_meeting
-from sgcad_core.planner.encounter.maneuver_choices import lines_to, pacings
+from sgcad_core.planner.encounter.maneuver_choices import lines_to
 from sgcad_core.planner.encounter.meeting_place import place_near
 from sgcad_core.planner.encounter.motion_options import Option, forced, options
+from sgcad_core.planner.encounter.pacing_choices import pacings
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.later_courses import runs_into, with_run
 from sgcad_core.planner.later_places import ToBeStruck

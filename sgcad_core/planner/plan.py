@@ -22,22 +22,23 @@ from sgcad_core.planner.aftermath.struck_objects import Strike
 from sgcad_core.planner.aftermath.told_order import ToldOrder, met_in_order, pair_of
 from sgcad_core.planner.bystanders import place_clear
 from sgcad_core.planner.encounter.conflict import Conflicts
-from sgcad_core.planner.encounter.maneuver_choices import ROLLS_IN
 from sgcad_core.planner.encounter.meeting_place import Place, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.near_miss import as_near_miss
+from sgcad_core.planner.encounter.pacing_choices import ROLLS_IN
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.encounter.try_elsewhere import WholeCourse, least_missed
 from sgcad_core.planner.knocked_aside import drive_over, knock_aside
 from sgcad_core.planner.later_meetings import LaterMeetings
 from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.lines.departures import departs, departure_station
 from sgcad_core.planner.lines.gore_lines import into_gores
 from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
-from sgcad_core.records.course import NOTHING_TOLD, Courses
+from sgcad_core.records.course import NOTHING_TOLD, Courses, CourseTold
 from sgcad_core.records.specs import BehaviorSpec, Contact, NearCrash, size_m
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.surface import road_surface
@@ -254,7 +255,8 @@ class _Cast:
                 continue
             gap = spacing_m(track.size, size_m(other)) * (1 if actor == trailer else -1)
             coupled = ahead_of(track.motion, gap, size_m(other))
-            brakes = other.id == tractor or not self._in_contact(actor)
+            touches = any(actor in (c.striker, c.struck) for c in self.contacts[:1])
+            brakes = other.id == tractor or not touches
             if scene.clear_until(scene.poses(coupled, own_s, brakes=brakes), coupled.size, 0.0) <= scene.contact:
                 self.notes.append(f"{trailer} is not towed by {tractor}: it would touch somebody first")
                 del self.tractors[trailer]
@@ -262,21 +264,25 @@ class _Cast:
             scene.add(other.id, other.kind, coupled, own_s, brakes=brakes)
             scene.hitches.append((tractor, trailer, coupling_m(scene.tracks[tractor].size)))
 
-    def _in_contact(self, actor: str) -> bool:
-        """Whether an actor takes part in the first declared contact."""
-        return any(actor in (c.striker, c.struck) for c in self.contacts[:1])
-
     def rest(self, scene: Scene) -> None:
         """Places all remaining actors that are not struck on the way, clear of the others."""
         aside = {strike.thing.id for strike in self.early}
         for actor in self.behavior.actors:
             if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in self.things | aside:
                 continue
-            note = place_clear(scene, self.role(actor.id))
-            self.notes += [note] if note else []
+            if note := place_clear(scene, self.role(actor.id) if self.possible else self._alone(actor.id)):
+                self.notes.append(note)
             track = scene.tracks[actor.id]
             own = track.own_s if track.motion.standing else track.own_s + scene.contact * STEP_S
             self._couple(scene, actor.id, own)
+
+    def _alone(self, name: str) -> Role:
+        """An actor where nothing is touched: it leaves the road as told."""
+        role, told = self.role(name), self.told.get(name, CourseTold())
+        if self.behavior.near_crash or not departs(role.actor.maneuver, told.departs):
+            return role
+        at = departure_station(role.course, role.actor.maneuver, role.place.station_m)
+        return replace(role, told=told, place=role.place._replace(station_m=at))
 
     def role(self, name: str) -> Role:
         """An actor at its usual place, for an encounter with another one."""

@@ -17,6 +17,7 @@ from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.inference.gaps import Gap
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold, end_of
+from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.maneuvers import meant_turn
 from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
 from sgcad_core.reading.text.conditions import Conditions
@@ -100,7 +101,18 @@ class CrashFacts:
         """The courses as they are planned: with the start from rest of the vehicles that are read so."""
         starts = {v.id for v in self.vehicles if v.from_stop}
         told = {who: replace(self.courses.get(who, CourseTold()), from_rest=True) for who in starts}
-        return {**self.courses, **told}
+        return {**self.courses, **told, **self._departing(told)}
+
+    def _departing(self, courses: Courses) -> Courses:
+        """The courses of vehicles whose departure only the thing beside the road implies that they strike first."""
+        things = {other.id: other.word for other in self.others if rule("departures.roadside").search(other.word)}
+        found = {}
+        for v in self.vehicles:
+            course = courses.get(v.id) or self.courses.get(v.id, CourseTold())
+            first = self.first_contact(v.id)
+            if first is not None and first.striker == v.id and first.struck in things and course.departs is None:
+                found[v.id] = replace(course, departs="either")
+        return found
 
     def vehicle(self, id: str) -> VehicleFacts | None:
         """The vehicle of that number."""

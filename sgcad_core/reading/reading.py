@@ -21,9 +21,10 @@ from sgcad_core.reading.actors.part_numbers import counts_itself
 from sgcad_core.reading.actors.people_objects import walk_of
 from sgcad_core.reading.actors.rename_ids import renamed
 from sgcad_core.reading.actors.vehicles import Roster, read_roster
+from sgcad_core.reading.contacts.acting_segments import acting_segments
 from sgcad_core.reading.contacts.contact_records import AREAS, ContactMention
 from sgcad_core.reading.contacts.contacts import contact_mentions
-from sgcad_core.reading.contacts.crash_course import CoursesRead, acting_segments, courses_told
+from sgcad_core.reading.contacts.crash_course import CoursesRead, courses_told
 from sgcad_core.reading.contacts.crash_roles import role_facts
 from sgcad_core.reading.contacts.later_impacts import later_impacts, things_struck, with_resting_contacts
 from sgcad_core.reading.contacts.near_crash import before_evasion, near_miss, near_misses, tells_hit

@@ -19,6 +19,8 @@ Attitude = Literal["wheels", "roof", "left", "right"]
 Spin = Literal["clockwise", "counterclockwise"]
 Hand = Literal["left", "right"]
 Steering = Literal["left", "right", "either"]
+DepartureSide = Compass | Hand | Literal["either"]
+"""Where a vehicle leaves the road: a compass word, a hand as seen in its direction of travel; either: not told."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,8 @@ class CourseTold:
     no_evasion: bool = False
     """The report says that it did nothing."""
     lost_control: bool = False
+    departs: DepartureSide | None = None
+    """Leaves the road before its first contact, or before it rolls over where it has none."""
     spin: Spin | None = None
     """How it turned after its first contact."""
     spin_deg: float | None = None

@@ -14,6 +14,7 @@ from sgcad_core.planner.encounter.meeting_place import TURNING, Place, meeting_p
 from sgcad_core.planner.encounter.motion_options import Option, aimed, forced, options, plainly, slid, spun, turned
 from sgcad_core.planner.encounter.pairing import Encounter, Ways, cannot, search
 from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.lines.departures import departs, departure_station, side_of
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
 from sgcad_core.records.course import Courses, CourseTold
 from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact, size_m
@@ -102,12 +103,19 @@ class Conflicts:
         places = self._places(a, b)
         pair = [
             Role(actor, self.courses[actor.id], size_m(actor), place, side, surface=self.behavior.surface,
-                 may_skid=self.may_skid, told=self.told.get(actor.id, CourseTold()), pushed=actor.id in self.pushed,
+                 may_skid=self.may_skid, told=self._told(actor, other), pushed=actor.id in self.pushed,
                  goes_on=self._goes_on(actor.id, contact))
-            for actor, place, side in ((a, places[0], contact.striker_area), (b, places[1], contact.struck_area))
+            for actor, other, place, side in
+            ((a, b, places[0], contact.striker_area), (b, a, places[1], contact.struck_area))
         ]  # fmt: skip
         first, second = pair
         return _facing_other(first, second), _facing_other(second, first)
+
+    def _told(self, actor: Actor, other: Actor) -> CourseTold:
+        """What is told of an actor; its way off the road leads to things, not to others on the road."""
+        told = self.told.get(actor.id, CourseTold())
+        side = side_of(actor.maneuver, told.departs) if other.record.thing else None
+        return told if side == told.departs else replace(told, departs=side)
 
     def _goes_on(self, actor: str, contact: Contact) -> bool:
         """Whether an actor on wheels strikes something else after a contact."""
@@ -133,6 +141,9 @@ class Conflicts:
     def _station_for(self, one: Actor, driver: Actor) -> float:
         """The station of a driver's course at which a pedestrian or an object is met."""
         course, length = self.courses[driver.id], size_m(driver)[0]
+        if departs(driver.maneuver, self._told(driver, one).departs):
+            leaving = driver.model_copy(update={"maneuver": "departing_road_right"})
+            return departure_station(course, driver.maneuver, preferred_station(leaving, course, length))
         if one.record.walks:
             return crosswalk_station(driver, course, length, one)
         return preferred_station(driver, course, length)

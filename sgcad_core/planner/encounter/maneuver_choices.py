@@ -7,11 +7,10 @@ driver, above that a loss of control.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from sgcad_core.planner.actor_plan import (
     Drift,
-    Pacing,
     Role,
     Twist,
     along_with,
@@ -22,33 +21,29 @@ from sgcad_core.planner.actor_plan import (
 )
 from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.encounter.out_of_lanes import is_out
+from sgcad_core.planner.encounter.pacing_choices import from_another_road
 from sgcad_core.planner.lines.axle_to_box import tightest
+from sgcad_core.planner.lines.departures import DEPARTURES, aside_m, departs, departure_sides
 from sgcad_core.planner.lines.turning import corner_lines
 
 SWERVE_MPS2 = 6.0
 """Lateral acceleration that gives the length of a swerve; the speed follows from friction."""
 _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
-_TOLD_SPEED = 0.25
-"""Cost of another speed than stated where it could give the stated rotation."""
 _NOT_EVADING = 0.3
 """Cost of the own line where steering aside is stated."""
 _EVADED_FROM = ("straight", "negotiating_curve", "slowing", "other")
 OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
 OTHER_LANE_COST = 1.0
 """More than another speed: a told lane is taken wherever the two can meet from it."""
+_OTHER_SIDE, _STAYS_ON_ROAD = 0.25, 2.5
+"""Costs of leaving the road on the unlikelier side, and of a told departure that is not driven."""
+_BEHIND_TURN_M = 16.0
+"""Length of the way off the road of a vehicle that turns first."""
 ASKEW, _STEERS = "stands askew", "steers aside before contact"
 _LEAVES = "leaves its lane"
 SLIDES = "slides into the contact at an angle that no steering explains"
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
-_THROUGH_BEND = 0.35
-"""Share of the usual speed when joining from another road, behind the bend."""
-_SLOWER, _FASTER = "drives slower than stated", "drives faster than stated"
-ROLLS_IN = "does not stop where it is told to have stood"
-_ROLLS = 0.6
-"""Cost of rolling into the encounter where a start from rest is stated."""
-_FROM_REST = ((0.0, 1.0), (0.1, 0.6), (0.15, 0.4))
-"""Costs of a start from rest, with the factor on the usual speed that is then reached."""
 
 
 def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
@@ -56,6 +51,8 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
 
     Not `fine`: without those that differ by less than a metre.
     """
+    if departs(role.actor.maneuver, role.told.departs):
+        return _departures(role, fine=fine)
     if role.actor.maneuver in _LANE_CHANGES:
         joins = role.actor.maneuver == "merge" and _joins(role)
         changes = _lane_changes(role, (0.0, 0.8, -0.8) if fine else (0.0,))
@@ -66,10 +63,7 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
         if role.spins or role.glances:
             shares = [(0.63, 0.0), (1.37, 0.05), (1.0, 0.1), *shares[1:]]
         shares = shares if fine else [shares[0], shares[3], shares[4]]
-        gentle = [_drift(role, wanted * k, cost, 1.7) for k, cost in shares]
-        hard = [_drift(role, wanted * k, cost + 0.12, 1.0) for k, cost in shares[:3]]
-        sharp = [_drift(role, wanted * k, cost + 0.4, 0.6) for k, cost in shares[:3]]
-        return [*gentle, *hard, *sharp, Drift(0.8)]
+        return [*_shifts(role, wanted, shares), Drift(0.8)]
     near = _in_lane(role) if fine else []
     if evading := _evading(role):
         return [
@@ -78,6 +72,25 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
             *(near_by._replace(cost=near_by.cost + _NOT_EVADING) for near_by in near),
         ]
     return [Drift(0.0), *near, *corner_lines(role), *_other_lanes(role), *_swerves(role)]
+
+
+def _shifts(role: Role, left_m: float, shares: Sequence[tuple[float, float]]) -> Iterator[Drift]:
+    """Shares of a shift with their costs: gently, and the first three also hard and sharply."""
+    for ease, more, count in ((1.7, 0.0, None), (1.0, 0.12, 3), (0.6, 0.4, 3)):
+        yield from (_drift(role, left_m * share, cost + more, ease) for share, cost in shares[:count])
+
+
+def _departures(role: Role, *, fine: bool) -> list[Drift]:
+    """Ways off the road on the side that is told, or on the likelier one and the other."""
+    shares = [(1.0, 0.0), (0.8, 0.1), (1.3, 0.15), (1.7, 0.3)] if fine else [(1.0, 0.0), (1.3, 0.15)]
+    found: list[Drift] = []
+    sides = departure_sides(role.course, role.place.station_m, role.told.departs or "either")
+    for rank, side in enumerate(sides):
+        wide = aside_m(role.course, side)
+        found += _shifts(role, wide, [(share, cost + _OTHER_SIDE * rank) for share, cost in shares])
+    if role.actor.maneuver in TURNING:
+        found = [drift._replace(length_m=min(drift.length_m, _BEHIND_TURN_M)) for drift in found]
+    return sorted([*found, Drift(_STAYS_ON_ROAD)], key=lambda drift: drift.cost)
 
 
 def _evading(role: Role) -> list[Drift]:
@@ -114,12 +127,7 @@ def _lane_changes(role: Role, further_m: Sequence[float]) -> list[Drift]:
 
 def _joins(role: Role) -> bool:
     """Whether its course leads beside the other one: out of another road, at a junction."""
-    return _from_another_road(role) and any(p.is_junction for p in role.course.passages)
-
-
-def _from_another_road(role: Role) -> bool:
-    """Whether it starts on another road than the other actor."""
-    return role.other_road not in (None, role.actor.road)
+    return from_another_road(role) and any(p.is_junction for p in role.course.passages)
 
 
 def _halfway(drift: Drift) -> Drift:
@@ -144,8 +152,7 @@ def _maneuver_shift(role: Role) -> float | None:
     return {
         "crossing_centerline": course.opposite_m,
         "overtaking": min(lane, course.opposite_m) if course.left_edge_m > lane else course.opposite_m,
-        "departing_road_left": course.left_edge_m + 4.0,
-        "departing_road_right": -(course.right_edge_m + 4.0),
+        **{maneuver: aside_m(course, side) for maneuver, side in DEPARTURES.items()},
     }.get(role.actor.maneuver)
 
 
@@ -202,40 +209,6 @@ def _from_beside(role: Role) -> list[Drift]:
 def lines_to(role: Role, lefts_m: Sequence[float]) -> list[Drift]:
     """Lines that leave the own one by some distances to the left, the nearest first."""
     return [_drift(role, left, abs(left) / 10, 1.3, _LEAVES) for left in sorted(lefts_m, key=abs)]
-
-
-def pacings(role: Role) -> list[Pacing]:
-    """Speeds: the usual one, catching up or falling behind, slower, faster, and from a stop."""
-    if role.actor.record.walks:
-        return [Pacing(0.0), Pacing(0.1, 1.6), Pacing(0.2, 0.7)]
-    if role.course.stalls and role.actor.maneuver == "backing":
-        return [Pacing(cost, factor, True) for cost, factor in ((0.0, 1.0), (0.1, 1.5), (0.15, 0.6))]
-    if role.pushed:
-        return [Pacing(0.0, 1.0, True)]
-    if role.told.from_rest:
-        started = [Pacing(cost, factor, True) for cost, factor in _FROM_REST]
-        return [*started, Pacing(_ROLLS, 0.6, note=ROLLS_IN), Pacing(_ROLLS + 0.1, 0.3, note=ROLLS_IN)]
-    told = _TOLD_SPEED if (role.spins or role.other_spins) and role.actor.speed_mph else 0.0
-    found = [Pacing(0.0), *_following(role), Pacing(0.2 + told, 0.75, note=_SLOWER)]
-    found += [Pacing(0.3 + told, 1.3, note=_FASTER), Pacing(0.4 + told, 0.5, note=_SLOWER)]
-    if role.actor.maneuver in TURNING or role.course.passages:
-        found.append(Pacing(0.25 + told, 1.0, True, "starts from a stop"))
-    return found
-
-
-def _following(role: Role) -> list[Pacing]:
-    """Speeds at which the rear one of two in one direction catches up."""
-    if not along_with(role) or "back" not in (role.side, role.other_side):
-        return []
-    own, other = usual_speed(role), role.other_mps
-    if role.side != "back" and own < other + 3.0:
-        return [Pacing(0.25, (other + 5.0) / own, note=_FASTER)]
-    if role.side == "back" and own > other - 3.0:
-        slower = [Pacing(0.15, max(other - 5.0, 0.4 * other, 1.0) / own, note=_SLOWER)]
-        if _from_another_road(role):
-            slower.append(Pacing(0.2, max(_THROUGH_BEND * other, 1.0) / own, note=_SLOWER))
-        return slower
-    return []
 
 
 def aiming(role: Role) -> list[Twist]:

@@ -17,6 +17,7 @@ from sgcad_core.metrics.labels.observed_crash import BEFORE_S
 from sgcad_core.metrics.untold_places import MOST_S
 from sgcad_core.planner.actor_plan import Role
 from sgcad_core.planner.lines.axle_to_box import offsets
+from sgcad_core.planner.lines.departures import departs
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import LEAD_S
 
@@ -85,6 +86,7 @@ def _is_free(role: Role) -> bool:
     is left."""
     record = role.actor.record
     lost = role.told.lost_control or (role.may_skid and not role.other_lost)
+    lost = lost or departs(role.actor.maneuver, role.told.departs)
     return lost or role.leaves_lanes or role.actor.gore or not record.wheeled or record.keeps_right
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, line_m
 from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING
+from sgcad_core.planner.lines.departures import departs, on_the_road
 from sgcad_core.planner.lines.path import Path
 
 _ZONE_M = 12.0
@@ -49,6 +50,8 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
         penalty = penalty + 0.5 * (path.s_m < drift.end_m - 0.8 * drift.length_m)
     if maneuver in ACROSS_LANES and drift.left_m:
         penalty = penalty + _UNMOVED * _unmoved(role, path, drift)
+    if departs(maneuver, role.told.departs):
+        penalty = penalty + _NOT_SHOWN * on_the_road(role.course, drift.profile(path.s_m))
     if drift.evades:
         penalty = penalty + _UNSTEERED * (np.abs(drift.profile(path.s_m) - drift.before_m) < _STEERED_M)
     return penalty

@@ -76,6 +76,8 @@ class Course:
     """Whether vehicles park square to the line: an aisle of a parking lot."""
     own_left_m: float = math.inf
     """To the left edge of the lanes of its direction; beyond lies the median or the other direction."""
+    median_m: float = 0.0
+    """Width of the median; 0 where the two directions lie beside each other."""
     astray: bool = False
     """Whether the requested route does not exist: another one was taken, or one off the road."""
 
@@ -171,13 +173,14 @@ def _measured(
         passages.append(Passage(way.to_node, float(a), float(b), _degree(graph, way.to_node) >= 3, around, cones_m))
         turn = passages[-1] if piece.way == route.turn or piece.way == len(route.ways) else turn
     own = next(i for i, p in enumerate(pieces) if p.way == route.start and not p.is_crossing)
-    opposite, own_left, left, right = _room(graph, route.ways[route.start], lane)
+    opposite, own_left, left, right, median = _room(graph, route.ways[route.start], lane)
     return Course(
         path=path, start_m=float(stations[own]), end_m=float(stations[-1]), passages=tuple(passages), turn=turn,
         lane_width_m=lane.width_m, opposite_m=opposite, left_edge_m=left, right_edge_m=right,
         limit_mps=lane.speed_mps, roads=tuple(roads), notes=notes, crosswalks=_crosswalks(graph, path),
         beside_m=_beside(graph, route.ways[route.start], right),
-        stalls=_has_stalls(graph, route.ways[route.start]), own_left_m=own_left, astray=route.astray,
+        stalls=_has_stalls(graph, route.ways[route.start]), own_left_m=own_left, median_m=median,
+        astray=route.astray,
     )  # fmt: skip
 
 
@@ -209,19 +212,21 @@ def _degree(graph: LaneGraph, node: str) -> int:
     return len({road_of(e.id)[0] for e in graph.edges.values() if node in (e.from_node, e.to_node)})
 
 
-def _room(graph: LaneGraph, way: Way, lane: Lane) -> tuple[float, float, float, float]:
+def _room(graph: LaneGraph, way: Way, lane: Lane) -> tuple[float, float, float, float, float]:
     """To the nearest opposing lane center, the left edge of its direction's lanes, the left and the right edge of the
-    road, metres."""
+    road, and the width of the median, metres."""
     side = from_right(way, lane)
     right = lane.width_m / 2 + sum(other.width_m for other in way.lanes[:side])
     left = lane.width_m / 2 + sum(other.width_m for other in way.lanes[side + 1 :])
     road, direction = road_of(way.id)
     back = graph.edges.get(edge_id(road, "backward" if direction == "forward" else "forward"))
     if back is None or way.wrong_way:
-        return left + lane.width_m / 2, left, left, right
+        return left + lane.width_m / 2, left, left, right, 0.0
     facing = (back.car_lanes or back.lanes)[-1]
     gap = _distance(lane.shape, facing.shape)
-    return gap, left, gap - facing.width_m / 2 + sum(other.width_m for other in back.lanes), right
+    center = back.center_lane or graph.edges[way.id].center_lane
+    median = 0.0 if center else max(gap - facing.width_m / 2 - left, 0.0)
+    return gap, left, gap - facing.width_m / 2 + sum(other.width_m for other in back.lanes), right, median
 
 
 def _distance(first: Floats, second: Floats) -> float:

@@ -12,9 +12,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from sgcad_core.reading.actors.vehicles import Roster
+from sgcad_core.reading.contacts.road_departure import DepartureReader
 from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.language import Rule, of_role, rule
-from sgcad_core.reading.motion.clauses import Segment, Statement, segments
+from sgcad_core.reading.motion.clauses import Segment, Statement
 from sgcad_core.reading.motion.motion_record import ManeuverCue, Source
 from sgcad_core.reading.text.compass import COMPASS, WORDS, turned
 from sgcad_core.reading.text.sentence_roles import HIT, Role
@@ -32,6 +33,7 @@ class _CourseReader:
 
     course: CourseTold = field(default_factory=CourseTold)
     sources: dict[str, Source] = field(default_factory=dict)
+    leaving: DepartureReader = field(default_factory=DepartureReader)
 
     def add(self, name: str, value: Any, source: Source) -> None:
         """Take a fact of the course unless it is known."""
@@ -61,24 +63,6 @@ class ImpactRead(NamedTuple):
     source: Source
 
 
-def acting_segments(statements: Sequence[Statement], roster: Roster) -> list[Segment]:
-    """Segments of all sentences, each with the vehicles that act in it."""
-    return [part for t in statements for part in _cut(_of_the_impact(t), roster)]
-
-
-def _cut(statement: Statement, roster: Roster) -> list[Segment]:
-    """One sentence; one that begins "Then rotated" goes on with the last one's subject."""
-    found = _with_own_acts(segments([statement], roster), statement)
-    goes_on = rule("course_rest.then").match(statement.text)
-    if not goes_on or not statement.subject:
-        return found
-    end = len(statement.text) - sum(len(part.text) for part in found)
-    return [
-        Segment((statement.subject,), statement.text[goes_on.end() : end].lower(), statement.role, statement.number),
-        *found,
-    ]
-
-
 def courses_told(
     statements: Sequence[Statement],
     segments: Sequence[Segment],
@@ -105,46 +89,13 @@ def courses_told(
     return CoursesRead(courses, sources)
 
 
-def _of_the_impact(statement: Statement) -> Statement:
-    """ "The impact caused V1 to rotate" with V1 as subject; "V1 after striking V2 rotated" with V1 alone."""
-    text = rule("course_rest.caused").sub(_caused, statement.text)
-    text = rule("course_rest.after_striking").sub(r"\g<who>", text)
-    return statement if text == statement.text else statement._replace(text=text)
-
-
-def _caused(m: re.Match[str]) -> str:
-    verb = "made to" if m["to"] else m["verb"]
-    return f"{m['who']} {'were' if m['who'].startswith('both') else 'was'} {verb}"
-
-
-def _with_own_acts(segments: Sequence[Segment], statement: Statement) -> list[Segment]:
-    """Segments of one sentence, with an onlooker's own acts given back to it.
-
-    "V2 noticed V1 turning into her path and steered right": V2 steered, as it did in "avoided V2 by steering left".
-    """
-    found: list[Segment] = []
-    for segment in segments:
-        before = found[-1] if found else None
-        onlooker = before.subjects if before and rule("course_evasion.perceives").search(before.text) else ()
-        onlooker = onlooker or (
-            (statement.subject,) if statement.subject and statement.subject not in segment.subjects else ()
-        )
-        back = rule("course_evasion.back_to_subject").search(segment.text)
-        if onlooker and segment.text.startswith("by "):
-            found.append(segment._replace(subjects=onlooker))
-        elif onlooker and back:
-            found.append(segment._replace(text=segment.text[: back.start()]))
-            found.append(segment._replace(subjects=onlooker, text=segment.text[back.start() :]))
-        else:
-            found.append(segment)
-    return found
-
-
 def _read(one: _CourseReader, segment: Segment, impact: int, event: str) -> None:
     before, behind = _split(segment, impact)
     if event and segment.number == impact and (at := segment.text.lower().find(event)) >= 0:
         before, behind = segment.text[:at], segment.text
     _read_evasion(one, segment, before)
+    if segment.role not in _RETOLD and segment.number <= impact:
+        _read_departure(one, segment, before)
     if behind:
         _read_spin(one, segment, behind)
         _read_rest(one, segment, behind)
@@ -184,11 +135,21 @@ def _read_evasion(one: _CourseReader, segment: Segment, text: str) -> None:
     lost = rule("meeting.lost").search(text)
     if lost and segment.role not in _RETOLD:
         one.add("lost_control", True, Source(segment.number, lost[0], "meeting.lost"))
+    if turned := rule("course_rest.turned").search(text):
+        one.add("lost_control", True, Source(segment.number, turned[0], "course_rest.turned"))
     for found in _done(text, of_role("braking")):
         one.add("brakes", True, Source(segment.number, found[1][0], found[0].id))
     for found in _done(text, of_role("steering")):
         to: Steering = _HANDS.get(found[1].groupdict().get("hand") or "", "either")
         one.add("steers", to, Source(segment.number, found[1][0], found[0].id))
+
+
+def _read_departure(one: _CourseReader, segment: Segment, text: str) -> None:
+    one.leaving.hear(text)
+    found = one.leaving.found
+    one.course = replace(one.course, departs=found.side if found else None)
+    if found and found.words in text:
+        one.sources["departs"] = Source(segment.number, found.words, found.rule)
 
 
 def _done(text: str, wordings: Sequence[Rule]) -> list[tuple[Rule, re.Match[str]]]:

@@ -35,12 +35,16 @@ _BARE_CURVE = rule("road_details.bare_curve")
 _RURAL = rule("roads.rural")
 
 
-def curves(statements: Sequence[Statement], headings: Mapping[str, Compass]) -> tuple[Curve, ...]:
-    """Curves in order; one without a told side is taken to the left of the first vehicle."""
+def curves(
+    statements: Sequence[Statement], headings: Mapping[str, Compass], left_on: str | None = None
+) -> tuple[Curve, ...]:
+    """Curves in order. One without a told side has the first vehicle leave the road on its outside: it goes right where
+    that vehicle leaves on the left (`left_on`), else left."""
     story = [t for t in statements if t.role in STORY_ROLES]
     found = tuple(c for t in story for c in _curves(t, headings))
     bare = [Source(t.number, m[0], _BARE_CURVE.id) for t in story if (m := _BARE_CURVE.search(t.text))]
-    return found or tuple(Curve("left", None, source) for source in bare[:1])
+    side: Literal["left", "right"] = "right" if left_on == "left" else "left"
+    return found or tuple(Curve(side, None, source) for source in bare[:1])
 
 
 def _curves(statement: Statement, headings: Mapping[str, Compass]) -> Iterator[Curve]:

@@ -121,7 +121,8 @@ def roads_of(statements: tuple[Statement, ...], roster: Roster, crash: CrashFact
     crash = turned_to_roads(crash, mentions, statements)
     driven = tuple(v for v in crash.vehicles if not actor_kind(v.kind).walks) or crash.vehicles
     headings = {v.id: v.heading for v in driven if v.heading}
-    limits, bends = speed_limits(statements, headings), curves(statements, headings)
+    left_on = next((c.departs for c in crash.courses.values() if c.departs in ("left", "right")), None)
+    limits, bends = speed_limits(statements, headings), curves(statements, headings, left_on)
     gathered = merge_roads(mentions, headings) or [MergedRoad(None) for _ in limits[:1]]
     approaches = approaches_of(statements)
     junction = junction_of(statements, driven, gathered, approaches)

@@ -1,0 +1,44 @@
+"""A vehicle has left the road where its center or its front is beside the lanes, on the side seen along its lane."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.formats.sumo.netconvert import compile_network
+from sgcad_core.formats.sumo.plain_xml import plain_xml
+from sgcad_core.metrics.road_departure import left_road
+from sgcad_core.records.specs import Leg, RoadLayout
+from sgcad_core.roads.layout import road_spec
+
+SPEC = road_spec(RoadLayout(legs=tuple(
+    Leg.model_validate({"bearing": b, "lanes_in": 1, "lanes_out": 1}) for b in "SN")))  # fmt: skip
+GRAPH = parse_net(compile_network(plain_xml(SPEC), SPEC).net_xml or "")
+
+
+def driven(to_x_m: float, *, south: bool = False) -> np.ndarray:
+    """(60, 3) poses in the lane of its direction and then to a distance east of the middle of the road."""
+    own = -1.6 if south else 1.6
+    x = own + (to_x_m - own) * np.clip((np.arange(60) - 20) / 40, 0, 1)
+    y = np.linspace(-100, -60, 60) * (-1 if south else 1)
+    return np.column_stack((x, y, np.full(60, -np.pi / 2 if south else np.pi / 2)))
+
+
+@pytest.mark.parametrize(("to_x_m", "south", "side"), [
+    (8.0, False, "right"), (-8.0, False, "left"), (-8.0, True, "right"), (8.0, True, "left"),
+    (1.6, False, None), (-1.6, False, None),
+])  # fmt: skip
+def test_the_side_is_seen_in_the_direction_of_travel(to_x_m: float, south: bool, side: str | None) -> None:
+    assert left_road(GRAPH, driven(to_x_m, south=south), 4.7) == side
+
+
+def test_a_front_beside_the_lanes_is_enough() -> None:
+    poses = driven(2.6)
+    poses[-1, 2] = np.pi / 4
+    assert left_road(GRAPH, poses, 4.7) == "right"
+    assert left_road(GRAPH, poses, 0.5) is None
+
+
+def test_a_vehicle_that_never_was_on_a_lane_has_left_none() -> None:
+    assert left_road(GRAPH, driven(20.0)[-3:], 4.7) is None

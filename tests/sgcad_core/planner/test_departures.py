@@ -1,0 +1,96 @@
+"""The side on which a road is left, how far beside the lane that is, and what is struck there."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sgcad_core.formats.sumo.net_xml import parse_net
+from sgcad_core.formats.sumo.netconvert import compile_network
+from sgcad_core.formats.sumo.plain_xml import plain_xml
+from sgcad_core.planner.lines.actor_course import find_course
+from sgcad_core.planner.lines.departures import aside_m, departs, departure_sides, on_the_road, side_of
+from sgcad_core.planner.plan import plan
+from sgcad_core.records.course import CourseTold
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
+from sgcad_core.roads.layout import road_spec
+
+
+def roads(bend=("none", "none"), **leg):
+    """A road with one lane each way; `bend`: as one drives in from the south and from the north."""
+    legs = tuple(
+        Leg.model_validate({"bearing": b, "lanes_in": 1, "lanes_out": 1, "curve": c} | leg)
+        for b, c in zip("SN", bend, strict=True)
+    )
+    spec = road_spec(RoadLayout(legs=legs))
+    return parse_net(compile_network(plain_xml(spec), spec).net_xml or "")
+
+
+CAR = Actor(id="V1", kind="car", road="S", direction="forward", exit_road="N", maneuver="straight")
+TREE = Actor(id="O1", kind="object", road="S", direction="forward", maneuver="stopped")
+ALONE = BehaviorSpec(actors=(CAR,), contacts=())
+HITS_TREE = BehaviorSpec(
+    actors=(CAR, TREE), contacts=(Contact(striker="V1", struck="O1", striker_area="front", struck_area="front"),)
+)
+
+
+def sides(graph, told):
+    line = find_course(graph, CAR)
+    return departure_sides(line, (line.start_m + line.end_m) / 2, told)
+
+
+@pytest.mark.parametrize(("told", "expected"), [
+    ("left", (1,)), ("right", (-1,)), ("E", (-1,)), ("NW", (1,)), ("N", (-1, 1)), ("either", (-1, 1)),
+])  # fmt: skip
+def test_hands_and_compass_words_are_sides_of_the_way(told, expected):
+    assert sides(roads(), told) == expected
+
+
+@pytest.mark.parametrize(("bend", "first"), [(("right", "left"), 1), (("left", "right"), -1)])
+def test_a_bend_is_left_on_its_outside(bend, first):
+    assert sides(roads(bend), "either")[0] == first
+
+
+def test_the_way_off_to_the_left_ends_in_the_median_where_there_is_one():
+    plain, divided = find_course(roads(), CAR), find_course(roads(median="grass"), CAR)
+    assert aside_m(plain, 1) > plain.left_edge_m
+    assert divided.own_left_m < aside_m(divided, 1) < divided.left_edge_m
+    assert aside_m(divided, -1) < -divided.right_edge_m
+    assert not on_the_road(divided, np.array([aside_m(divided, 1), aside_m(divided, -1)])).any()
+    assert on_the_road(divided, np.array([0.0])).all()
+
+
+def test_a_center_turn_lane_is_no_median():
+    line = find_course(roads(center_turn_lane=True), CAR)
+    assert line.median_m < 0.5
+    assert aside_m(line, 1) > line.left_edge_m
+
+
+def test_what_is_told_last_counts_before_the_maneuver():
+    assert side_of("departing_road_right", None) == "right"
+    assert side_of("departing_road_right", "left") == "left"
+    assert side_of("straight", None) is None
+    assert not departs("stopped", "left")
+    assert departs("straight", "left")
+
+
+@pytest.mark.parametrize(("told", "way"), [("right", 1), ("left", -1)])
+def test_the_thing_that_is_struck_stands_beside_the_road(told, way):
+    made = plan(HITS_TREE, roads(), courses={"V1": CourseTold(departs=told)})
+    assert made.realised
+    tree = next(t for t in made.trajectories if t.actor == "O1")
+    assert way * float(tree.x_m[0]) > 3.6
+    assert made.oddity < 0.4
+
+
+def test_without_a_contact_the_road_is_left_before_the_vehicle_rolls_over():
+    told = CourseTold(departs="right", rolls=True)
+    (car,) = plan(ALONE, roads(), courses={"V1": told}).trajectories
+    rolled = np.abs(car.rolls) > math.radians(45)
+    assert rolled[-1]
+    assert float(car.x_m[int(rolled.argmax())]) > 3.6
+    (kept,) = plan(ALONE, roads(), courses={"V1": replace(told, departs=None)}).trajectories
+    assert float(kept.x_m.max()) < 3.6
