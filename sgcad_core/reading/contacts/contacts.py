@@ -178,7 +178,7 @@ def _active(
 ) -> ContactMention | None:
     pair = paired_areas(scope)
     scope = _clause(rule("contact_words.aside").sub(" ", scope))
-    if first := rule("contact_words.own_first").match(scope):
+    if (first := rule("contact_words.own_first").match(scope)) and MENTION.findall(scope)[:1] != [actor]:
         area, scope = area_of(first["area"]) or area, " " + scope[first.end() :]
     own = rule("contact_words.with_its").search(scope)
     if own and rule("contact.made_contact").match(verb) and rule("contact.touched").match(scope):
