@@ -38,7 +38,7 @@ def from_turn_lane(crash: CrashTold, inferred: CrashInferred, pairs: list[Contac
 
 
 def from_entered_lanes(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
-    """Whom one meets that entered the eastbound lanes heads east, where nothing else tells its way."""
+    """Turns the one that is met in lanes that the other one entered to their way, where nothing else tells its own."""
     for b in pairs[:1]:
         for came, met in ((b.actor, b.other), (b.other, b.actor)):
             way = crash.motions[came].entered
