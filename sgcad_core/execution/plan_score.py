@@ -15,7 +15,7 @@ import numpy as np
 
 from sgcad_core.case.records import Scenario, Trajectory
 from sgcad_core.errors import InvalidOutput, Refused
-from sgcad_core.execution.contact import first_contact, realised
+from sgcad_core.execution.contact import avoided, closest_approach, first_contact, realised
 from sgcad_core.execution.scenario import actor_infos
 from sgcad_core.metrics.drivability import driving_peaks, first_touches
 from sgcad_core.metrics.untold_places import untold_places
@@ -64,9 +64,14 @@ class LeastDoubted(NamedTuple):
 
 
 def doubt(behavior: BehaviorSpec, motions: Sequence[Trajectory], oddity: float) -> float:
-    """0 where the declared pair meets as declared in ordinary driving; larger with every deviation."""
+    """0 where the declared pair meets, or of a near crash comes as near, as declared in ordinary driving; larger with
+    every deviation."""
     sizes = {a.id: size_m(a) for a in behavior.actors}
     if behavior.contacts and not realised(behavior.contacts[0], first_contact(motions, sizes)):
+        return _UNMET
+    near = behavior.near_crash
+    pair = (near.conflict.striker, near.conflict.struck) if near else ("", "")
+    if near and not avoided(near, first_contact(motions, sizes), closest_approach(motions, sizes, pair)):
         return _UNMET
     return (oddity if oddity >= ODD_FROM else 0.0) + _OVER * _undrivable(behavior, motions)
 

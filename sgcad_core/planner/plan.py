@@ -182,8 +182,14 @@ class _Cast:
     # -------------------------------------------------------------- the first contact
     def near_crash(self, near: NearCrash, conflicts: Conflicts) -> Encounter | None:
         """A conflict with its evasion; None where the two cannot be brought near or cannot be parted."""
-        course = conflicts.as_they_drive(near.conflict) if self.usable((near.conflict,)) else None
-        found, notes = as_near_miss(course, near)
+        if not self.usable((near.conflict,)):
+            return None
+        found, notes = as_near_miss(conflicts.as_they_drive(near.conflict), near)
+        if found is None and (started := [who for who, told in conflicts.told.items() if told.from_rest]):
+            rolling = {who: replace(told, from_rest=False) for who, told in conflicts.told.items()}
+            course = replace(conflicts, told=rolling).as_they_drive(near.conflict)
+            found, notes = as_near_miss(course, near)
+            notes = (*(f"{who} is not seen starting from rest" for who in started), *notes)
         self.notes += notes
         return found
 

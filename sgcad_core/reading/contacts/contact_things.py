@@ -68,3 +68,8 @@ def any_object(statement: Statement, scope: str, roster: Roster) -> str | None:
         return anything["object"].lower() if anything else None
     known = statement.role in _QUOTED or rule("contact_words.no_thing").search(anything[0])
     return None if known else anything["object"].lower()
+
+
+def off_the_ground(told: tuple[ContactMention, ...]) -> tuple[ContactMention, ...]:
+    """Without contacts with the ground, where anything else was touched: it is no thing that stands there."""
+    return tuple(b for b in told if b.other != "ground") or told

@@ -32,6 +32,7 @@ from sgcad_core.reading.contacts.contact_things import (
     behind_things,
     listed,
     lone_thing,
+    off_the_ground,
     thing_acts,
     thing_hit,
 )
@@ -49,16 +50,12 @@ def contact_mentions(statements: Iterable[Statement], roster: Roster) -> tuple[C
     for t in statements:
         if t.role in ("codes", "factors", "police", "health", "formal"):
             continue
-        into = (
-            crash
-            if t.role in ("impact", "approach", "avoidance", "rest", "opening", "road", "conditions", "other")
-            else retold
-        )
-        into += _sentence(t, roster)
+        told = t.role in ("impact", "approach", "avoidance", "rest", "opening", "road", "conditions", "other")
+        (crash if told else retold).extend(_sentence(t, roster))
     first = min((b.number for b in crash if b.other in roster.ids), default=0)
     early = [b for b in retold if b.number < first and b.other in roster.ids]
     late = [b for b in retold if b not in early]
-    return (*early, *crash, *late) or _only_named(statements, roster)
+    return off_the_ground((*early, *crash, *late)) or _only_named(statements, roster)
 
 
 def _only_named(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
@@ -181,6 +178,8 @@ def _active(
 ) -> ContactMention | None:
     pair = paired_areas(scope)
     scope = _clause(rule("contact_words.aside").sub(" ", scope))
+    if (first := rule("contact_words.own_first").match(scope)) and MENTION.findall(scope)[:1] != [actor]:
+        area, scope = area_of(first["area"]) or area, " " + scope[first.end() :]
     own = rule("contact_words.with_its").search(scope)
     if own and rule("contact.made_contact").match(verb) and rule("contact.touched").match(scope):
         own = None  # "made contact with the left door": its owner is told elsewhere

@@ -96,8 +96,19 @@ def _of_mention(mention: ContactMention, roster: Roster) -> ImpactRead | None:
 def _in_order(texts: Mapping[int, str], acts: Sequence[ImpactRead], mentions: Sequence[ImpactRead]) -> list[ImpactRead]:
     """Both readings of things in the order of the text; one that both have is the act, which knows its vehicle."""
     acted = {(read.source.number, read.impact.other) for read in acts}
-    found = [*acts, *(read for read in mentions if (read.source.number, read.impact.other) not in acted)]
+    sides = {(read.source.number, read.impact.actor, read.impact.other): read.impact.actor_area for read in mentions}
+    found = [
+        *(_with_side(read, sides) for read in acts),
+        *(read for read in mentions if (read.source.number, read.impact.other) not in acted),
+    ]
     return sorted(found, key=lambda read: _place(read, texts))
+
+
+def _with_side(read: ImpactRead, sides: Mapping[tuple[int, str, str], Area | None]) -> ImpactRead:
+    """An act with the side that the same contact has by its verb of touching, where it has none of its own."""
+    impact = read.impact
+    side = impact.actor_area or sides.get((read.source.number, impact.actor, impact.other))
+    return read._replace(impact=replace(impact, actor_area=side))
 
 
 def with_resting_contacts(impacts: Sequence[ImpactRead], read: CoursesRead, last: int = 1) -> tuple[ImpactRead, ...]:

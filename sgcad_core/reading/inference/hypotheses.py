@@ -17,6 +17,8 @@ from sgcad_core.records.specs import Maneuver
 
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
 _CORNER, _OPEN_SIDE, _GUESSED, _LANE, _HEADING, _TURN, _SWAP = 0.1, 0.25, 0.2, 0.2, 0.3, 0.5, 0.7
+_NEAR = 0.15
+"""Of a heading in a near crash, which has no sides that touched to infer it from."""
 """Prices: what a reading must gain by its checks to be preferred."""
 ONWARD = "drives straight on"
 
@@ -72,12 +74,15 @@ def _guesses(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis
 
 
 def _headings(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis]:
-    """A heading that is inferred is another one."""
+    """A heading that is inferred is another one; of a near crash without any told heading, that of the second one."""
+    alone = [] if facts.near_crash is None else [v for v in pair if v.id != facts.vehicles[0].id]
     for v in pair:
-        if v.heading is not None and not v.heading_stated and facts.oriented:
+        if v.heading is not None and not v.heading_stated and (facts.oriented or v in alone):
             for by in (90, -90, 180):
                 heading = turned(v.heading, by)
-                yield _changed(facts, replace(v, heading=heading), f"{v.id} heads {heading}", _HEADING)
+                yield _changed(
+                    facts, replace(v, heading=heading), f"{v.id} heads {heading}", _NEAR if alone else _HEADING
+                )
 
 
 def _turns(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis]:

@@ -12,6 +12,7 @@ from typing import Any
 from sgcad_core.reading.contacts.contact_records import ContactMention, with_areas
 from sgcad_core.reading.contacts.contact_sides import infer_contacts
 from sgcad_core.reading.inference.inference_state import QUARTER_DEG, CrashInferred, CrashTold, end_of
+from sgcad_core.reading.inference.silent_vehicles import beside_road, from_entered_lanes, from_turn_lane
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.heading_lane_cues import TURNS_TO
 from sgcad_core.reading.motion.maneuvers import (
@@ -44,6 +45,8 @@ def infer_crash(crash: CrashTold) -> CrashInferred:
     _faced_headings(crash, inferred)
     _still_moving(crash, inferred, pairs)
     _set_going(crash, inferred, pairs)
+    beside_road(crash, inferred, pairs)
+    from_turn_lane(crash, inferred, pairs)
     _change_hands(crash, inferred, pairs)
     _mend_headings(crash, inferred, pairs)
     _complete_headings(crash, inferred, pairs)
@@ -219,6 +222,7 @@ def _complete_headings(crash: CrashTold, inferred: CrashInferred, pairs: list[Co
     if not ids:
         return
     _from_exits(crash, inferred)
+    from_entered_lanes(crash, inferred, pairs)
     if not inferred.headings:
         inferred.headings[ids[0]] = "N"
     for _ in ids:

@@ -143,6 +143,12 @@ def _changed(need: _Need, leg: Leg, legs: dict[Compass, Leg], facts: RoadFacts) 
     plain = len(legs) == 2
     if need.center:
         yield from ((one.bearing, _with_center(one)) for one in legs.values() if _on_axis(one, need.way))
+    elif plain and ahead is not None and _has_the_spare_lane(need, leg, facts):
+        yield leg.bearing, leg.model_copy(update={"lanes_in": leg.lanes_in + 1, "lanes_out": leg.lanes_out - 1})
+        yield (
+            ahead.bearing,
+            ahead.model_copy(update={"lanes_in": ahead.lanes_in - 1, "lanes_out": ahead.lanes_out + 1}),
+        )
     elif need.turn and not plain:
         yield leg.bearing, _with_turn_lane(leg, need.turn, _exits(need.way, legs))
     else:
@@ -152,6 +158,15 @@ def _changed(need: _Need, leg: Leg, legs: dict[Compass, Leg], facts: RoadFacts) 
         if ahead is not None and ahead.kind not in JOINING and ahead.lanes_out and not told:
             out = max(ahead.lanes_out, min(least, _through(leg, least)))
             yield ahead.bearing, ahead.model_copy(update={"lanes_out": out})
+
+
+def _has_the_spare_lane(need: _Need, leg: Leg, facts: RoadFacts) -> bool:
+    """Whether the lane that a need lacks is the spare one of an odd total, which the other direction was given."""
+    axis = axis_of(leg.bearing)
+    odd = any(road.lanes.total == leg.lanes_in + leg.lanes_out for road in facts.streets if road.axis in (None, axis))
+    short = not need.turn and need.lanes == leg.lanes_in + 1 == leg.lanes_out
+    others = (v for v in facts.crash.vehicles if v.heading == leg.bearing)
+    return odd and short and leg.median == "none" and all(_own(v) < leg.lanes_out for v in others)
 
 
 def _said(need: _Need, before: Leg, after: Leg) -> str:

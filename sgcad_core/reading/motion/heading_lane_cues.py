@@ -132,6 +132,8 @@ def read_lane(motion: VehicleMotion, text: str, from_median: bool = False) -> No
             text[: m.start()]
         ):
             continue
+        if m.group("turn") and rule("surroundings.lane_of_road").search(text[: m.start()]):
+            continue
         center = _center_lane(text, m)
         if center is not None and not rule("surroundings.in_lane").search(text[: center.start()]):
             continue  # of the road: "a five-lane road with a center turn lane"

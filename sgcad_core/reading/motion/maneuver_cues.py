@@ -18,6 +18,7 @@ _NOT = rule("deeds.not")
 _HOPED = ("overtaking", "lane_change", "lane_change_left", "lane_change_right", "merge")
 """What a vehicle may wait or prepare to do and never does."""
 _SIDES = ("side", "side2", "side3", "side4", "side5", "side6")
+_FROM = ("fromside", "streetside", "roadside", "nearside")
 _TURNS = ("turn_left", "turn_right")
 _BY_ANGLE = {90: "right", 135: "right", 225: "left", 270: "left"}
 """The hand of a turn by its change of heading, clockwise degrees."""
@@ -56,6 +57,7 @@ def read_maneuver_cues(motion: VehicleMotion, text: str, weight: int, number: in
             _NOT.search(before)
             or rule("deeds.evasive").search(text[: m.start()])
             or rule("deeds.steering").search(before)
+            or rule("deeds.turned_aside").match(text[m.end() :])
         ):
             continue
         led = before + text[m.start() : m.start(told) if told else m.start()]
@@ -125,10 +127,12 @@ def _read_turn_to(segment: _Segment) -> None:
 def _note_cue(segment: _Segment, cue: Rule, m: re.Match[str]) -> None:
     kind, motion = cue.yields["deed"], segment.motion
     if kind == "from_side":
-        motion.from_side = "left" if (m["fromside"] or m["streetside"]).lower() == "left" else "right"
+        told = next(m[side] for side in _FROM if m[side])
+        motion.from_side = "left" if told.lower() == "left" else "right"
     elif kind == "into_lane":
         entered = compass_of(m.group("bound"))
-        own = motion.headings[0][1] if motion.headings else None
+        own = motion.headings[0].value if motion.headings else None
+        motion.entered = motion.entered or (entered if entered != own else None)
         if entered and own and turned(entered, 180) == own:
             segment.add("crossing_centerline", m, cue.id)
     else:

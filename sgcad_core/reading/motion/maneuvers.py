@@ -74,7 +74,7 @@ _MOVING = (
     "overtaking",
     *_PLAIN,
 )
-_DEPARTURES: tuple[Maneuver, ...] = ("departing_road_left", "departing_road_right")
+DEPARTURES: tuple[Maneuver, ...] = ("departing_road_left", "departing_road_right")
 
 
 def _last_state(motion: VehicleMotion) -> Decision | None:
@@ -179,7 +179,11 @@ def _turn(motion: VehicleMotion, hit: tuple[Area | None, ...], same_way: Maneuve
         if (cue := motion.cue(f"code:{turn}")) and not (from_behind and _standing(motion, hit)):
             return Decision(turn, cue=cue)
     acts = [d for d in motion.cues if d.kind in _TURNS and d.weight >= 2]
-    if acts and not (from_behind and motion.has_cue("stopped", 2)):
+    stops = [d.number for d in motion.cues if d.kind == "stopped" and d.weight >= 2] if from_behind else []
+    acts = [
+        d for d in acts if not stops or d.number > max(stops)
+    ]  # one struck from behind stands, unless it turns since
+    if acts:
         return _as_told(max(acts, key=lambda d: d.weight))
     if cue := motion.cue("code:into_opposite"):
         return Decision("turn_left", cue=cue)
@@ -253,7 +257,7 @@ def _moving(motion: VehicleMotion, least: int) -> Decision:
         return Decision("lane_change_left", False, cue)
     if cue := motion.cue("negotiating_curve", 3):
         return Decision("negotiating_curve", cue=cue)
-    for side in _DEPARTURES:
+    for side in DEPARTURES:
         if cue := motion.cue(f"code:{side}"):
             return Decision(side, cue=cue)
     if cue := motion.cue("slowing", least) or motion.cue("code:slowing"):

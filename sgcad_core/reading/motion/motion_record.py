@@ -76,6 +76,8 @@ class VehicleMotion:
     origin: Access | None = None
     target: Access | None = None
     from_side: Literal["left", "right"] | None = None
+    entered: Compass | None = None
+    """The way of the traffic into whose lanes it came."""
     sources: dict[str, Source] = field(default_factory=dict)
     """Where lane, origin, target, each exit ("exit W") and where it faces or backs to ("faces W", "backs W") were first
     read."""

@@ -73,7 +73,7 @@ def _add_maneuvers(score: dict[int, float], crash: CrashTold, inferred: CrashInf
         if maneuver == "crossing_centerline":
             score[180] += 1.5
         if motion.origin == RAMP or maneuver in ("lane_change_left", "lane_change_right", "merge"):
-            score[0] += 2.0 if motion.origin == RAMP else 1.4  # a ramp runs beside the road before it joins
+            score[0] += 2.0 if motion.origin == RAMP else 1.6  # a ramp runs beside the road before it joins
         if motion.origin in DRIVES:
             score[90] += 1.0
             score[270] += 1.0

@@ -163,11 +163,14 @@ def _split(facts: LaneFacts, ends: tuple[Compass, Compass]) -> dict[Compass, Dir
 
 def _of_one_carriageway(facts: LaneFacts, used: int, numbered: bool) -> bool:
     """Whether a total is that of one half of a divided road: of two or three lanes always; of more where a vehicle is
-    in a lane that half of them would not have, or in a numbered one of a road that is not told to be two-way.
+    in a lane that half of them would not have, or in a numbered one of a road that is not told to be two-way. A lane
+    beyond the half also makes it so where no divide is told.
 
-    In coded reports of the last kind four of five totals are those of one half.
+    In coded reports four of five totals with a numbered lane are those of one half.
     """
     total = facts.total or 0
+    if facts.divided is None and facts.one_way is None and not (facts.each_way or facts.toward or facts.turns):
+        return FEW <= total <= MOST and used > (total + 1) // 2 and not facts.center_turn_lane
     if not facts.divided or facts.center_turn_lane or facts.each_way or facts.toward or facts.turns or total > MOST:
         return False
     both = facts.one_way is False or facts.median == "grass" or not numbered

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import pytest
+
 from sgcad_core.case.records import Scenario
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.plan_score import doubt, least_doubted
 from sgcad_core.planner import plan
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.reading import read
-from sgcad_core.records.specs import BehaviorSpec
+from sgcad_core.records.specs import BehaviorSpec, Contact, NearCrash
 from tests.sgcad_core.planner.aftermath.test_rest_fit import crossing
 from tests.sgcad_core.planner.crash_scenes import network
+from tests.sgcad_core.planner.test_plan_rules import actor
 
 TEXT = "V1 was eastbound. V2 was southbound. The front of V1 struck the right front of V2."
 GRAPH = network("four_leg")
@@ -124,3 +127,11 @@ def test_where_nothing_else_meets_somebody_who_slows_drives_on() -> None:
     unmet = met.model_copy(update={"behavior": met.behavior.model_copy(update={"contacts": (wrong,)})})
     least = least_doubted(facts, only_onward, GRAPH, unmet)
     assert least.facts.vehicles[0].maneuver == "straight"
+
+
+@pytest.mark.parametrize(("other", "expected"), [("N", 10.0), ("E", 0.0)])
+def test_a_near_crash_of_two_that_come_nowhere_near_is_doubted(other: str, expected: float) -> None:
+    conflict = Contact(striker="V1", struck="V2", striker_area="front", struck_area="left")
+    actors = (actor("V1", "straight", "S"), actor("V2", "straight", other))
+    behavior = BehaviorSpec(actors=actors, near_crash=NearCrash(conflict=conflict))
+    assert doubt(behavior, plan(behavior, GRAPH).trajectories, 0.0) == expected

@@ -8,6 +8,7 @@ import pytest
 from sgcad_core.execution.contact import CLEARANCE_TOLERANCE_M, avoided, closest_approach, first_contact
 from sgcad_core.metrics.drivability import driving_peaks
 from sgcad_core.planner import Plan, plan
+from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import CLEARANCE_M, Actor, BehaviorSpec, Evasion, NearCrash, size_m
 from tests.sgcad_core.planner.crash_scenes import draw_scene, network
 from tests.sgcad_core.planner.test_plan_rules import actor, contact, track
@@ -146,3 +147,13 @@ def test_drawn_conflicts_are_parted_within_the_limits_of_driving(seed):
         if a.record.wheeled:
             seen = driving_peaks(track(made, a.id), sizes[a.id][0], backing=a.maneuver == "backing")
             assert not seen.excesses(behavior.surface)
+
+
+def test_who_cannot_come_near_from_rest_is_driving_and_a_note_says_so():
+    told = near(REAR)
+    behavior = BehaviorSpec(actors=(BEHIND, actor("V2", "slowing", "S", lane=1)), near_crash=told)
+    made = plan(behavior, network("straight"), courses={"V1": CourseTold(from_rest=True)})
+    sizes = {a.id: size_m(a) for a in behavior.actors}
+    closest = closest_approach(made.trajectories, sizes, ("V1", "V2"))
+    assert avoided(told, first_contact(made.trajectories, sizes), closest)
+    assert "V1 is not seen starting from rest" in made.notes

@@ -51,3 +51,13 @@ def test_a_corner_is_open_only_where_a_report_numbers_nobody() -> None:
     assert not any(one.corner for one in hypotheses(numbered))
     text = "The AV was going north. The front of a van going east hit the left front corner of the AV."
     assert any(one.corner for one in hypotheses(read(text).crash))
+
+
+def test_in_a_near_crash_without_directions_the_second_one_heads_otherwise_first() -> None:
+    text = (
+        "The subject driver is driving on a two lane road when another vehicle starts to enter the intersection. The "
+        "subject driver brakes to avoid hitting the other vehicle."
+    )
+    found = [one.words for one in hypotheses(read(text).crash)]
+    assert found[:3] == ["V2 heads W", "V2 heads E", "V2 heads N"]
+    assert not any(one.startswith("V1 heads") for one in found)

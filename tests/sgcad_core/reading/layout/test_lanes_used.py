@@ -75,3 +75,18 @@ def test_a_told_center_turn_lane_runs_along_the_road() -> None:
 def test_who_overtakes_on_a_parted_road_has_a_second_lane() -> None:
     text = "V1 was traveling north on a divided highway with one lane in each direction and was passing V2."
     assert legs(text + " V2 was traveling north." + HIT)["S"].lanes_in == 2
+
+
+def test_the_spare_lane_of_an_odd_count_goes_to_who_is_in_it() -> None:
+    text = (
+        "V1 was traveling south in lane two of a three-lane, undivided roadway. V2 was traveling north in lane one. "
+        "V2 departed its lane to the left."
+    )
+    found = legs(text + " The front of V2 struck the left side of V1.")
+    assert (found["N"].lanes_in, found["N"].lanes_out) == (2, 1)
+    assert (found["S"].lanes_in, found["S"].lanes_out) == (1, 2)
+
+
+def test_a_lane_beyond_half_of_a_count_makes_it_that_of_one_direction() -> None:
+    found = legs("V1 was westbound in lane 4 of a 5 lane highway. V2 was westbound in lane 2." + HIT)
+    assert {leg.lanes_in for leg in found.values()} == {5}

@@ -1,0 +1,46 @@
+"""Vehicles of which a report tells little: beside the road, in a turn lane, in lanes that another one entered.
+
+Knows what was read and is settled so far; no text.
+"""
+
+from __future__ import annotations
+
+from sgcad_core.reading.contacts.contact_records import ContactMention
+from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
+from sgcad_core.reading.motion.maneuvers import DEPARTURES
+from sgcad_core.reading.motion.motion_record import Source
+from sgcad_core.records.specs import Maneuver
+
+
+def beside_road(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
+    """Parks a vehicle of which nothing is told but that one that had left the road met it, after a thing or first."""
+    for b in () if crash.roster.counted else pairs:
+        for met, came in ((b.actor, b.other), (b.other, b.actor)):
+            motion = crash.motions[met]
+            silent = not (motion.headings or motion.cues or motion.relations or motion.lane or motion.lane_word)
+            if silent and inferred.maneuvers[came] in DEPARTURES:
+                inferred.maneuvers[met] = "parked"
+                inferred.sources[f"{met} maneuver"] = Source(b.number, b.words, "infer.beside_road")
+
+
+def from_turn_lane(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
+    """Turns a vehicle of which nothing is told but its turn lane, where it meets one that is told to come another
+    way."""
+    turns: dict[str, Maneuver] = {"left_turn": "turn_left", "right_turn": "turn_right"}
+    for b in () if crash.near else pairs[:1]:
+        for v, other in ((b.actor, b.other), (b.other, b.actor)):
+            turn = turns.get(crash.motions[v].lane_word or "")
+            silent = f"{v} maneuver" not in inferred.sources and inferred.maneuvers[v] == "straight"
+            told = {v, other} <= inferred.stated and inferred.headings[v] != inferred.headings[other]
+            if turn and silent and told:
+                inferred.maneuvers[v] = turn
+                inferred.sources[f"{v} maneuver"] = Source(b.number, b.words, "infer.from_turn_lane")
+
+
+def from_entered_lanes(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
+    """Turns the one that is met in lanes that the other one entered to their way, where nothing else tells its own."""
+    for b in pairs[:1]:
+        for came, met in ((b.actor, b.other), (b.other, b.actor)):
+            way = crash.motions[came].entered
+            if way and came in inferred.headings and met not in inferred.headings and not crash.motions[met].relations:
+                inferred.headings[met] = way
