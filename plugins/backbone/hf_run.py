@@ -167,7 +167,10 @@ class RunningModel:
             if place < len(found.ids):
                 at = max(bisect_right(begins, max(ends[place] - 1, 0)) - 1, 0)
                 words = [self._spelled(token) for token in (evidence, prior, found.ids[place])]
-                told.append(dict(zip(("evidence", "prior", "chosen"), words, strict=True)) | {"field": spans[at].path if spans else "$"})
+                told.append(
+                    dict(zip(("evidence", "prior", "chosen"), words, strict=True))
+                    | {"field": spans[at].path if spans else "$"}
+                )
         return told
 
     def _spelled(self, token: int) -> str:

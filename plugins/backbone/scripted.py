@@ -99,8 +99,8 @@ def question_digest(query: Query) -> str:
 class Scripted(Backbone):
     """Answers from a script instead of a model, for tests and replays.
 
-    answers are entries in the config; file holds further ones (a YAML list, one JSON value a line in .jsonl, or a folder
-    of such files).
+    answers are entries in the config; file holds further ones (a YAML list, one JSON value a line in .jsonl, or a
+    folder of such files).
     """
 
     gives_logits: ClassVar[bool] = False
@@ -130,7 +130,6 @@ class Scripted(Backbone):
         kept = self.file / ASKED if self.file else None
         return _read_digests(kept) if kept and kept.is_file() else {}
 
-
     def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
         """The first entry whose conditions hold, else the next without any. Raises InvalidOutput if none is left."""
         if decoder.needs_prior:
@@ -147,7 +146,7 @@ class Scripted(Backbone):
         if kept and kept != (now := question_digest(query)):
             raise ConfigError(
                 f"backbone.file {self.file}: case {query.case!r}, stage {query.stage}: the prompt or the answer schema "
-                f"has changed since its answers were recorded (digest {now}, kept {kept}): read the answers against the "
+                f"has changed since its answers were recorded (digest {now}, kept {kept}): read them against the "
                 "new prompt, mend what it asks otherwise, then `python -m research.benchmarks.scenes.recorded --keep`"
             )
 
@@ -178,7 +177,9 @@ def _read_digests(file: Path) -> dict[str, dict[str, str]]:
         found = yaml.safe_load(file.read_text(encoding="utf-8"))
         return {str(case): dict(stages) for case, stages in dict(found or {}).items()}
     except (OSError, TypeError, ValueError, *YAML_FAULTS) as fault:
-        raise ConfigError(f"{file}: no mapping of case, stage and digest ({fault}): write it anew with --keep") from fault
+        raise ConfigError(
+            f"{file}: no mapping of case, stage and digest ({fault}): write it anew with --keep"
+        ) from fault
 
 
 def _read(file: Path) -> list[Any]:

@@ -21,7 +21,9 @@ def near_crash_findings(behavior: BehaviorSpec, reading: Reading) -> Iterator[Fi
     near = facts.near_crash
     if near is None:
         if behavior.near_crash is not None and any(c.stated for c in facts.contacts):
-            found = _finding("the report tells a contact, no near crash", "near_crash", "declared", "declare the contact")
+            found = _finding(
+                "the report tells a contact, no near crash", "near_crash", "declared", "declare the contact"
+            )
             yield quoted(found, reading, _TOLD_BY)
         return
     told = facts.contacts[0]

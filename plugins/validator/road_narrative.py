@@ -59,7 +59,9 @@ class RoadNarrative(Validator):
         reading, facts = evidence.report.reading, evidence.report.reading.roads
         drawn, legs, pictured = compiled_roads(graph), junctions(graph), bool(evidence.report.diagrams)
         asked = [
-            *_no_circle(facts, graph), *(asked_control(facts, artifact.spec) if self.every else ()), *self._legs(facts, len(legs[0]) if legs else 0, pictured),
+            *_no_circle(facts, graph),
+            *(asked_control(facts, artifact.spec) if self.every else ()),
+            *self._legs(facts, len(legs[0]) if legs else 0, pictured),
             *self._paths(facts, legs, pictured), *self._directions(facts, drawn), *self._one_way(facts, drawn),
             *self._lanes(facts, drawn, pictured), *(() if pictured else self._lanes_one_way(facts, drawn)),
         ]  # fmt: skip

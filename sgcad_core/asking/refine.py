@@ -1,9 +1,9 @@
 """The one refinement loop: write, judge, ask again with the findings; every attempt is kept.
 
 Knows records, errors and validators; no format, no model, no Prefect. Refinement is not retry: each attempt sees what
-was wrong with all before. Hard findings are asked about until they are mended or ten attempts are made. Questions are put
-once, with their sentence: an answer that stands by its value settles them. Doubts are not put to a model. A writer that asks no model gives the same answer
-twice, so it gets one attempt, and a second one if it mends what was found.
+was wrong with all before. Hard findings are asked about until they are mended or ten attempts are made. Questions are
+put once, with their sentence: an answer that stands by its value settles them. Doubts are not put to a model. A writer
+that asks no model gives the same answer twice, so it gets one attempt, and a second one if it mends what was found.
 """
 
 from __future__ import annotations

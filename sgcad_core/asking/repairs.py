@@ -100,8 +100,9 @@ def _failed(previous: str, former: Sequence[Former]) -> Iterator[str]:
             value = value_at(attempt.answer, finding.where)
             changed = value is not None and value != value_at(previous, finding.where)
             if finding.severity == "repair" or changed:
-                shown = finding.value if value is None else json.dumps(value, separators=(",", ":"), ensure_ascii=False)
-                yield f"- attempt {attempt.number}, {finding.where or 'answer'} = {_short(shown, _SHOWN)}: {_why(finding)}"
+                said = finding.value if value is None else json.dumps(value, separators=(",", ":"), ensure_ascii=False)
+                where = finding.where or "answer"
+                yield f"- attempt {attempt.number}, {where} = {_short(said, _SHOWN)}: {_why(finding)}"
 
 
 def value_at(answer: str, where: str) -> Any | None:

@@ -104,9 +104,7 @@ def _score(one: ScoredChunk, job: Job, logits: Sequence[Tensor], words: int) -> 
     one.parts += [part.double() for part in (sound, picked, *(row.logp(known, picked) for row in rows), *tokens_of[1:])]
 
 
-def _all_picked(
-    job: Job, rows: list[Tensor], mask: Mask | None, left: list[int], finite: Tensor
-) -> tuple[Tensor, ...]:
+def _all_picked(job: Job, rows: list[Tensor], mask: Mask | None, left: list[int], finite: Tensor) -> tuple[Tensor, ...]:
     """Whether the decoder's scores are valid, one token for each position, and the best token of each row there if
     there are two; forced positions are not scored."""
     free = [i for i in range(len(rows[0])) if mask is None or left[i] != 1]

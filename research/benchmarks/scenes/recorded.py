@@ -116,22 +116,26 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n", maxsplit=1)[0])
     parser.add_argument("names", nargs="*", help="dialogues; without: all")
     parser.add_argument("--out", type=Path, help="keep the results here")
-    parser.add_argument("--keep", action="store_true", help="write down what is asked now as what the answers belong to")
+    parser.add_argument(
+        "--keep", action="store_true", help="write down what is asked now as what the answers belong to"
+    )
     options = parser.parse_args(argv)
     cases = [case for case in cases_in([REPORTS]) if not options.names or case.id in options.names]
     config = recorded_config(options.keep)
-    print("| dialogue | road attempts | scenario attempts | ended | told and there | verdict | contradictions | passes |")
-    print("|---|---|---|---|---|---|---|---|")
+    print(  # noqa: T201 - a command prints
+        "| dialogue | road attempts | scenario attempts | ended | told and there | verdict | contradictions | passes |"
+    )
+    print("|---|---|---|---|---|---|---|---|")  # noqa: T201 - a command prints
     with tempfile.TemporaryDirectory() as folder:
         rows = [_told(row_of(config, case, options.out or Path(folder))) for case in cases]
-    print(f"\n{sum(row.passes for row in rows)} of {len(rows)} pass")
+    print(f"\n{sum(row.passes for row in rows)} of {len(rows)} pass")  # noqa: T201 - a command prints
     if options.keep and isinstance(config.backbone, Recorder) and config.backbone.file:
         _keep(config.backbone.file / ASKED, config.backbone.noted)
     return 0 if all(row.passes for row in rows) else 1
 
 
 def _told(row: Row) -> Row:
-    print(row.line(), flush=True)
+    print(row.line(), flush=True)  # noqa: T201 - a command prints
     return row
 
 

@@ -82,7 +82,12 @@ def _without_persons(sentence: TracedText) -> TracedText:
         return joined([*clauses, end])
     if not _CRASH.search(left) and (gone[0] or rule("privacy.person_subject").match(left)):
         return end.strip(".!? ")  # what is left tells of a person, or has lost its subject and tells of no motion
-    text = joined(list(_kept(clauses, gone))).strip(" ,;").sub(rule("privacy.connector"), "").sub(rule("privacy.left_open"), "")
+    text = (
+        joined(list(_kept(clauses, gone)))
+        .strip(" ,;")
+        .sub(rule("privacy.connector"), "")
+        .sub(rule("privacy.left_open"), "")
+    )
     if gone[0] and not rule("privacy.verb_begins").match(text.text):
         text = text.sub(rule("privacy.small_beginning"), lambda m: m.group(0).upper(), 1)
     elif gone[0] and (lost := _subject(clauses[0])):

@@ -1,6 +1,7 @@
 """Recorded dialogues (tests/recorded) through the whole chain, and a prompt that has changed since.
 
-Reports and answers are made up by hand, as a capable model would have led the dialogue; no figure of a model comes of it.
+Reports and answers are made up by hand, as a capable model would have led the dialogue; no figure of a model comes of
+it.
 """
 
 import pytest
@@ -14,7 +15,14 @@ from sgcad_core.errors import ConfigError
 from sgcad_core.registry import plugin_class
 
 CASES = {case.id: case for case in cases_in([REPORTS])}
-QUICK = ("left_across_signal", "rear_end_stopped", "pedestrian_midblock", "pole_right", "near_lane_change", "wrong_way_leg")
+QUICK = (
+    "left_across_signal",
+    "rear_end_stopped",
+    "pedestrian_midblock",
+    "pole_right",
+    "near_lane_change",
+    "wrong_way_leg",
+)
 OPEN = {
     "cyclist_right_hook": "the planner puts the car into another lane than the cyclist's",
     "guardrail": "a told speed is not reached on ice",

@@ -89,7 +89,8 @@ def test_findings_about_a_behavior_never_exclude_each_other(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_findings_about_roads_never_exclude_each_other(name):
     report, network, _ = right(name)
-    assert isinstance(network, RoadNetwork) and network.spec
+    assert isinstance(network, RoadNetwork)
+    assert network.spec is not None
     assert said(network, report, None) == ()
     wrong = [compile_network(plain_xml(spec), spec) for spec in list(wrong_roads(network.spec))[:6]]
     found = [f for one in wrong for f in said(one, report, None)]

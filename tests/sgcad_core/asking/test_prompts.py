@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from sgcad_core.asking import prompts
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
-from sgcad_core.case.records import Finding
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
 from sgcad_core.records.specs import BehaviorSpec, Refusal, RoadLayout, RoadSpec
 

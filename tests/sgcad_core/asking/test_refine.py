@@ -34,7 +34,13 @@ class Judge(Validator):
         words = artifact.log.split()
         told = Told(field="lanes", value=2, by="rules", confidence=0.9, start=0, end=4, sentence="Two lanes.")
         return [
-            Finding(source="judge", severity=word, what=f"a {word}", value="lanes", told=told if word == "question" else None)
+            Finding(
+                source="judge",
+                severity=word,
+                what=f"a {word}",
+                value="lanes",
+                told=told if word == "question" else None,
+            )
             for word in words
         ]
 

@@ -50,12 +50,14 @@ def test_all_earlier_answers_that_failed_are_listed_with_the_reason_of_each():
     met = Finding(source="agreement", what="nothing touches", where="V1.maneuver")
     former = [Former(1, answer("straight"), (question("parked"),)), Former(2, answer("parked"), (met,))]
     text = repair_text(answer("slowing"), [met], former)
-    assert '- attempt 1, V1.maneuver = "straight": other; the report: \'It was parked.\'' in text
+    assert "- attempt 1, V1.maneuver = \"straight\": other; the report: 'It was parked.'" in text
     assert '- attempt 2, V1.maneuver = "parked": [agreement] nothing touches' in text
 
 
 def test_an_answer_that_stands_by_its_value_has_not_failed():
-    text = repair_text(answer("straight"), [Finding(source="s", what="x")], [Former(1, answer("straight"), (question("parked"),))])
+    text = repair_text(
+        answer("straight"), [Finding(source="s", what="x")], [Former(1, answer("straight"), (question("parked"),))]
+    )
     assert "attempt 1" not in text
 
 
@@ -76,13 +78,19 @@ def test_of_findings_that_exclude_each_other_the_graver_one_is_put():
     assert put_to_model([question("straight", holds=hold("straight")), fault])[0].severity == "question"
 
 
-CHOICE = st.dictionaries(st.sampled_from("ab"), st.lists(st.integers(0, 2), min_size=1, unique=True).map(tuple), min_size=1)
+CHOICE = st.dictionaries(
+    st.sampled_from("ab"), st.lists(st.integers(0, 2), min_size=1, unique=True).map(tuple), min_size=1
+)
 HOLDS = st.builds(
     Hold, items=st.just("legs"), at=st.integers(0, 1), either=st.lists(CHOICE, min_size=1, max_size=2).map(tuple)
 )
 
 
-@given(HOLDS, HOLDS, st.lists(st.fixed_dictionaries({"a": st.integers(0, 2), "b": st.integers(0, 2)}), min_size=2, max_size=2))
+@given(
+    HOLDS,
+    HOLDS,
+    st.lists(st.fixed_dictionaries({"a": st.integers(0, 2), "b": st.integers(0, 2)}), min_size=2, max_size=2),
+)
 def test_findings_that_one_answer_satisfies_never_exclude_each_other(one, other, items):
     def met(hold):
         return any(all(items[hold.at][name] in values for name, values in choice.items()) for choice in hold.either)
