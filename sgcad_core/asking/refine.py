@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from sgcad_core.asking.repairs import Former, put_to_model, repair_text
+from sgcad_core.asking.repairs import repair_of
 from sgcad_core.asking.schema_holds import narrowed_schema
 from sgcad_core.case.records import (
     Attempt,
@@ -180,7 +180,7 @@ class Refinement:
         number = len(turns) + 1
         last = turns[-1].attempt if turns else None
         findings = tuple(f for f in last.findings if f.severity in _ASKING) if last else ()
-        repair = _repair(turns) if self.ask and self.show_findings else ""
+        repair = repair_of([turn.attempt for turn in turns]) if self.ask and self.show_findings else ""
         holds = _holds(turns) if self.hold_findings else ()
         return self._turn(findings, number, repair, holds)
 
@@ -247,14 +247,6 @@ def prompt_text(query: Query) -> str:
     parts += ["[the crash report and its diagrams stand here]"]
     parts += [query.repair] if query.repair else []
     return "\n\n".join(parts)
-
-
-def _repair(turns: Sequence[Turn]) -> str:
-    """What the next attempt hears of all former ones; empty where there is nothing to hear."""
-    if not turns or not (findings := put_to_model(turns[-1].attempt.findings)):
-        return ""
-    former = [Former(a.number, a.answer, a.findings) for a in (turn.attempt for turn in turns[:-1])]
-    return repair_text(turns[-1].attempt.answer, findings, former)
 
 
 def _holds(turns: Sequence[Turn]) -> tuple[Hold, ...]:

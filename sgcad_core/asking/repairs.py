@@ -9,11 +9,10 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
-from sgcad_core.case.records import Finding, Hold
+from sgcad_core.case.records import Attempt, Finding, Hold
 from sgcad_core.findings import SOFT
 from sgcad_core.record_base import Value
 
@@ -33,16 +32,14 @@ _STEP = re.compile(r"\.?(?:([A-Za-z_]\w*)|\[(\d+)\])")
 _ORDER = ("refuse", "repair", *SOFT, "note")
 
 
-@dataclass(frozen=True)
-class Former:
-    """An earlier attempt: its number, its answer and what was found."""
-
-    number: int
-    answer: str
-    findings: tuple[Finding, ...]
+def repair_of(attempts: Sequence[Attempt]) -> str:
+    """What the next attempt hears of all former ones of its stage; empty where there is nothing to hear."""
+    if not attempts or not (findings := put_to_model(attempts[-1].findings)):
+        return ""
+    return repair_text(attempts[-1].answer, findings, attempts[:-1])
 
 
-def repair_text(previous: str, findings: Sequence[Finding], former: Sequence[Former] = ()) -> str:
+def repair_text(previous: str, findings: Sequence[Finding], former: Sequence[Attempt] = ()) -> str:
     """The answer before (if known), its faults, the sentences it is asked about, and earlier answers that failed."""
     faults = [f for f in findings if f.severity not in SOFT]
     asked = [f for f in findings if f.severity in SOFT]
@@ -93,7 +90,7 @@ def _one_item(a: Hold, b: Hold) -> bool:
 
 
 # ------------------------------------------------------------------ earlier answers
-def _failed(previous: str, former: Sequence[Former]) -> Iterator[str]:
+def _failed(previous: str, former: Sequence[Attempt]) -> Iterator[str]:
     """A line for each fault of an earlier answer, and for each question upon which its value was changed."""
     for attempt in former:
         for finding in put_to_model(attempt.findings):

@@ -5,8 +5,8 @@ import json
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sgcad_core.asking.repairs import Former, exclude, put_to_model, repair_text, value_at
-from sgcad_core.case.records import Finding, Hold
+from sgcad_core.asking.repairs import exclude, put_to_model, repair_text, value_at
+from sgcad_core.case.records import Attempt, Finding, Hold
 from sgcad_core.findings import Told
 
 ANSWER = {"actors": [{"id": "V1", "maneuver": "straight", "lane": None}], "contacts": [{"striker": "V1"}]}
@@ -18,6 +18,10 @@ def told(value, field="vehicles.V1.maneuver"):
 
 def question(value, where="V1.maneuver", **fields):
     return Finding(source="n", severity="question", what="other", where=where, told=told(value), **fields)
+
+
+def attempt(number, said, findings):
+    return Attempt(stage="scenario", number=number, answer=said, findings=findings)
 
 
 def answer(maneuver):
@@ -48,7 +52,7 @@ def test_a_fault_quotes_the_sentence_that_it_rests_on():
 
 def test_all_earlier_answers_that_failed_are_listed_with_the_reason_of_each():
     met = Finding(source="agreement", what="nothing touches", where="V1.maneuver")
-    former = [Former(1, answer("straight"), (question("parked"),)), Former(2, answer("parked"), (met,))]
+    former = [attempt(1, answer("straight"), (question("parked"),)), attempt(2, answer("parked"), (met,))]
     text = repair_text(answer("slowing"), [met], former)
     assert "- attempt 1, V1.maneuver = \"straight\": other; the report: 'It was parked.'" in text
     assert '- attempt 2, V1.maneuver = "parked": [agreement] nothing touches' in text
@@ -56,7 +60,7 @@ def test_all_earlier_answers_that_failed_are_listed_with_the_reason_of_each():
 
 def test_an_answer_that_stands_by_its_value_has_not_failed():
     text = repair_text(
-        answer("straight"), [Finding(source="s", what="x")], [Former(1, answer("straight"), (question("parked"),))]
+        answer("straight"), [Finding(source="s", what="x")], [attempt(1, answer("straight"), (question("parked"),))]
     )
     assert "attempt 1" not in text
 
