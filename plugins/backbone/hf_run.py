@@ -174,7 +174,8 @@ class RunningModel:
         return told
 
     def _spelled(self, token: int) -> str:
-        return bytes(self.maker.tokens.decode_bytes([token])).decode("utf-8", errors="replace")
+        """A token's text; a part of a character is written as its bytes."""
+        return bytes(self.maker.tokens.decode_bytes([token])).decode("utf-8", errors="backslashreplace")
 
     def _tokens(self, parts: list[bytes], found: Answer) -> tuple[Token, ...]:
         """Token records; a character that several tokens spell counts to the last of them."""

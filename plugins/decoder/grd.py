@@ -9,9 +9,9 @@ With c and q the log-probabilities with and without context, i and j their best 
     trusted:                 q's probability of j > confidence (.5), and H(q) < H(c)
 
 t c + (1 - t) q is the power family p_c^t p_q^(1-t); at t* the two best tokens are equally likely, below it j is ahead.
-Jiang et al. 2026, "From Context-Aware to Conflict-Aware", arXiv:2606.10298, and the authors' program. They decide once,
-at the first conflict of an answer, which row to trust; here every conflict is decided by itself, since an answer has many
-fields and a decoder keeps no state.
+Jiang et al. 2026, "From Context-Aware to Conflict-Aware", arXiv:2606.10298, and the authors' program. They decide which
+row to trust once, at the first conflict of an answer; here every conflict is decided by itself, since an answer has
+many fields and a decoder keeps no state.
 """
 
 from __future__ import annotations
