@@ -151,7 +151,7 @@ def test_sentences_go_whole_and_leave_no_stump(sentences):
     [
         ("The driver, who had been drinking alcohol, lost control.", "The driver lost control."),
         ("The driver of V1, a licensed 19-year-old male, accelerated.", "The driver of V1 accelerated."),
-        ("V1 was driven by a 34-year-old woman who wore a belt and who was treated.", "V1 was driven by a person."),
+        ("V1 was driven by a woman who wore a lap belt and who was treated.", "V1 was driven by a woman."),
         ("The air bags of V1 fired, which then rolled over.", "The air bags of V1 fired, which then rolled over."),
         ("V1 sustained disabling damage and was towed.", "V1 was towed."),
     ],
