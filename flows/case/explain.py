@@ -6,6 +6,7 @@ Reads a case's folder (result.json), or a report. Asks no model.
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,10 +14,13 @@ from typing import Any
 from pydantic import ValidationError
 
 from sgcad_core.account import Disagreement
-from sgcad_core.case.records import CrashReport, Fact
+from sgcad_core.case.records import Conflict, CrashReport, Fact
 from sgcad_core.errors import BadInput
 from sgcad_core.records.timeline import Act
 from sgcad_core.registry import plugin_class
+
+_SHOWN = 20
+"""Most conflicts of an attempt that are listed."""
 
 
 def explain(source: Path) -> str:
@@ -39,7 +43,25 @@ def _of_run(folder: Path) -> str:
             f"{folder}: result.json tells no facts ({type(fault).__name__}): run the case again with this version"
         ) from fault
     told = account(f"{result['case']} ({result['config']})", places, facts, acts)
-    return "\n".join([told, *_disputed(result.get("disagreements") or ())])
+    return "\n".join([told, *_disputed(result.get("disagreements") or ()), *_conflicts(folder)])
+
+
+def _conflicts(folder: Path) -> list[str]:
+    """Where a model's rows with and without the report wanted other tokens, by attempt, and whose was written."""
+    lines: list[str] = []
+    for file in sorted(folder.glob("attempts/*/attempt.json")):
+        try:
+            generation = json.loads(file.read_text(encoding="utf-8")).get("generation") or {}
+            found = list(map(Conflict.model_validate, generation.get("conflicts") or ()))
+        except (OSError, ValueError, AttributeError) as fault:
+            raise BadInput(f"{file}: tells no attempt ({type(fault).__name__}): run the case again") from fault
+        if found:
+            won = Counter(one.winner for one in found)
+            counts = ", ".join(f"{who} {won[who]}" for who in ("evidence", "prior", "neither") if won[who])
+            lines += ["", f"Evidence against prior, {file.parent.name}: {len(found)} tokens; won: {counts}"]
+            lines += [f"    {one.line()}" for one in found[:_SHOWN]]
+            lines += [f"    and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else []
+    return lines
 
 
 def _disputed(found: Sequence[Mapping[str, Any]]) -> list[str]:

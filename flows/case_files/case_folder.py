@@ -193,6 +193,7 @@ def _about(attempt: Attempt) -> dict[str, Any]:
             "model_calls": generation.model_calls,
             "seconds": generation.seconds,
             "grounding": dict(generation.grounding),
+            "conflicts": [c.model_dump() for c in generation.conflicts],
             "notes": list(generation.notes),
         }
     return about

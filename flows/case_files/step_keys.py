@@ -20,14 +20,14 @@ from pydantic import BaseModel
 
 from flows.case_files import find_cases, record_json
 from sgcad_core import findings
-from sgcad_core.asking import refine, schema_holds
+from sgcad_core.asking import refine, repairs, schema_holds
 from sgcad_core.asking.refine import Turn
 from sgcad_core.case import evidence, records
 from sgcad_core.config import Config
 from sgcad_core.interfaces import Plugin
 from sgcad_core.records import facts, second_reader, specs
 
-_RECORDS = (evidence, facts, findings, second_reader, records, specs, refine, schema_holds, record_json)
+_RECORDS = (evidence, facts, findings, second_reader, records, specs, refine, repairs, schema_holds, record_json)
 """Modules that define the content of kept results; other code in them is another key."""
 
 

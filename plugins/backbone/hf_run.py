@@ -10,6 +10,7 @@ import dataclasses
 import math
 import threading
 import weakref
+from bisect import bisect_right
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -18,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
 from plugins.backbone.prompt import Parts
-from sgcad_core.asking.json_field_spans import first_tokens, grounding, is_refusal, name_of
+from sgcad_core.asking.json_field_spans import field_spans, first_tokens, grounding, is_refusal, name_of
 from sgcad_core.case.records import Finding, Generation, Token
 from sgcad_core.errors import BadInput, ConfigError, InvalidOutput
 from sgcad_core.plugin_calls import fault_of
@@ -141,6 +142,7 @@ class RunningModel:
                 "tokens": self._tokens(parts, found),
                 "finish": finish,
                 "grounding": ground,
+                "conflicts": self._conflicts(text.decode("latin-1"), ends, found),
                 "told": self._told(text.decode("latin-1"), ends, found) if found.states else {},
                 "prompt_tokens": found.prompt_tokens,
                 "model_calls": found.model_calls,
@@ -155,6 +157,25 @@ class RunningModel:
         heads = {path: head for path in places if (head := self.evidence_heads.get(name_of(path))) is not None}
         logits = {path: float(found.states[places[path]] @ head[:-1] + head[-1]) for path, head in heads.items()}
         return {path: 1 / (1 + math.exp(-logit)) for path, logit in logits.items()}
+
+    def _conflicts(self, text: str, ends: Sequence[int], found: Answer) -> list[dict[str, str]]:
+        """The tokens at which both rows disagreed, with their fields."""
+        spans = field_spans(text)
+        begins = [span.start for span in spans]
+        told = []
+        for place, (evidence, prior) in sorted(found.rivals.items()):
+            if place < len(found.ids):
+                at = max(bisect_right(begins, max(ends[place] - 1, 0)) - 1, 0)
+                words = [self._spelled(token) for token in (evidence, prior, found.ids[place])]
+                told.append(
+                    dict(zip(("evidence", "prior", "chosen"), words, strict=True))
+                    | {"field": spans[at].path if spans else "$"}
+                )
+        return told
+
+    def _spelled(self, token: int) -> str:
+        """A token's text; a part of a character is written as its bytes."""
+        return bytes(self.maker.tokens.decode_bytes([token])).decode("utf-8", errors="backslashreplace")
 
     def _tokens(self, parts: list[bytes], found: Answer) -> tuple[Token, ...]:
         """Token records; a character that several tokens spell counts to the last of them."""

@@ -16,6 +16,9 @@ from sgcad_core.interfaces import Decoder
 if TYPE_CHECKING:
     from torch import Tensor
 
+_LEAST_LOGP = -1e4
+"""Instead of -inf, so that differences of two excluded tokens stay numbers."""
+
 
 class Sampled(Decoder):
     """A decoder that may sample: temperature 0, the default, takes the most likely token."""
@@ -89,3 +92,16 @@ def plausible_only(scores: Tensor, with_context: Tensor, beta: float) -> Tensor:
         return scores
     floor = with_context.amax(-1, keepdim=True) + log(beta)
     return scores.masked_fill(with_context < floor, float("-inf"))
+
+
+def log_rows(with_context: Tensor, without_context: Tensor | None) -> tuple[Tensor, Tensor]:
+    """Log-probabilities of both rows, (rows, vocabulary) in fp32, nats; no token is -inf."""
+    if without_context is None:
+        raise ValueError("this decoder needs the row without context; the backbone handed None")
+    first, second = (row.float().log_softmax(-1) for row in (with_context, without_context))
+    return first.clamp_min(_LEAST_LOGP), second.clamp_min(_LEAST_LOGP)
+
+
+def entropy(log_p: Tensor) -> Tensor:
+    """Shannon entropy of rows of log-probabilities, nats: (rows, 1)."""
+    return -(log_p.exp() * log_p).sum(-1, keepdim=True)

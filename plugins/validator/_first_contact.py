@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal
 
-from plugins.validator._told import as_question
+from plugins.validator._told import as_question, quoted
 from sgcad_core.case.records import Finding, Hold
 from sgcad_core.findings import FindingFactory
 from sgcad_core.reading.contacts.contact_records import ContactFacts
@@ -37,8 +37,9 @@ def contact_findings(
     said = next(iter(_behind_things(behavior, reading.crash)), None)
     if said is None:
         if behavior.near_crash is None:  # else `near_crash_findings` says so
-            yield _finding("the report tells a contact, but none is declared", "contacts", "", _declare(told),
-                           holds=(*_first(told), *_acting(behavior, told, reading)))  # fmt: skip
+            found = _finding("the report tells a contact, but none is declared", "contacts", "", _declare(told),
+                             holds=(*_first(told), *_acting(behavior, told, reading)))  # fmt: skip
+            yield quoted(found, reading, [f"{_at(reading, told)}.{role}" for role in ("striker", "struck")])
     elif _pair(said) != _pair(told):
         yield _other_pair(behavior, said, told, reading)
     elif _sides(said) != _sides(told):
@@ -59,9 +60,9 @@ def _other_pair(behavior: BehaviorSpec, said: Contact, told: ContactFacts, readi
     what = f"the report's first contact is between {told.striker} and {told.struck}"
     holds = (*_first(told), *_acting(behavior, told, reading))
     found = _finding(what, value=f"{said.striker} and {said.struck}", remedy=_declare(told), holds=holds)
-    if _kinds(said) != _kinds(told) and all(_pair(c) != _pair(told) for c in behavior.contacts):
-        return found
     fields = [f"{_at(reading, told)}.{role}" for role in ("striker", "struck")]
+    if _kinds(said) != _kinds(told) and all(_pair(c) != _pair(told) for c in behavior.contacts):
+        return quoted(found, reading, fields)
     asked = as_question(found, reading, fields, f"{told.striker} and {told.struck}")
     return asked if asked.told else found.model_copy(update={"severity": "doubt"})
 

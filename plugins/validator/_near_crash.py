@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from plugins.validator._told import as_question
+from plugins.validator._told import as_question, quoted
 from sgcad_core.case.records import Finding, Severity
 from sgcad_core.findings import FindingFactory
 from sgcad_core.reading.reading import Reading
@@ -21,7 +21,10 @@ def near_crash_findings(behavior: BehaviorSpec, reading: Reading) -> Iterator[Fi
     near = facts.near_crash
     if near is None:
         if behavior.near_crash is not None and any(c.stated for c in facts.contacts):
-            yield _finding("the report tells a contact, no near crash", "near_crash", "declared", "declare the contact")
+            found = _finding(
+                "the report tells a contact, no near crash", "near_crash", "declared", "declare the contact"
+            )
+            yield quoted(found, reading, _TOLD_BY)
         return
     told = facts.contacts[0]
     pair = {told.striker, told.struck}
@@ -35,7 +38,7 @@ def near_crash_findings(behavior: BehaviorSpec, reading: Reading) -> Iterator[Fi
     elif said is None:
         what = "the report tells a near crash, but none is declared"
         severity: Severity = "repair" if near.stated else "note"
-        yield _finding(what, "near_crash", "", f"declare one of {between}", severity)
+        yield quoted(_finding(what, "near_crash", "", f"declare one of {between}", severity), reading, _TOLD_BY)
     elif {said.conflict.striker, said.conflict.struck} != pair:
         value = f"{said.conflict.striker} and {said.conflict.struck}"
         what = f"the report's near crash is of {between}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from plugins.validator._told import as_question
 from sgcad_core.case.records import Finding
@@ -11,7 +11,7 @@ from sgcad_core.reading.provenance.road_provenance import road_names
 from sgcad_core.reading.reading import Reading
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
 from sgcad_core.reading.text.compass import COMPASS, NAMES, turned
-from sgcad_core.records.specs import Compass
+from sgcad_core.records.specs import Compass, RoadSpec
 
 Asked = tuple[Finding, tuple[str, ...]]
 """A finding, and the facts that it may rest on, the likeliest first."""
@@ -38,3 +38,17 @@ def lane_fields(road: RoadFact, facts: RoadFacts, first: str) -> tuple[str, ...]
     name = next((n for n, r in zip(road_names(facts), facts.roads, strict=True) if r is road), "main")
     ways = (f"lanes_{NAMES[way]}bound" for way in COMPASS)
     return tuple(f"roads.{name}.{at}" for at in (first, "lanes_total", "lanes_each_way", "one_way", *ways))
+
+
+def asked_control(facts: RoadFacts, spec: RoadSpec | None) -> Iterator[Asked]:
+    """A question if the told control of the junction stands at no node of the network."""
+    told = facts.junction.control
+    if spec is None or told == "none" or not facts.junction.stated:
+        return
+    drawn = {node.control for node in spec.nodes} - {"none"}
+    if told not in drawn:
+        found = Finding(
+            source="road_narrative", what=f"the junction's control is {told} in the report", where="junction.control",
+            value=", ".join(sorted(drawn)) or "none", remedy=f"set the control of its node to {told}",
+        )  # fmt: skip
+        yield found, ("junction.control",)

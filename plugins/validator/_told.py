@@ -31,6 +31,12 @@ def as_question(finding: Finding, reading: Reading, fields: Iterable[str], value
     return finding.model_copy(update={"severity": severity, "told": told})
 
 
+def quoted(finding: Finding, reading: Reading, fields: Iterable[str]) -> Finding:
+    """The finding with the sentence that states the first of these fields; its severity stays."""
+    fact = next((fact for fact in _stated(reading, fields) if fact.end is not None), None)
+    return finding.model_copy(update={"told": _told(reading, fact, None)}) if fact else finding
+
+
 def _stated(reading: Reading, fields: Iterable[str]) -> Iterator[Fact]:
     known = {fact.field: fact for fact in reading.facts}
     yield from (known[name] for name in fields if name in known and known[name].status == "stated")

@@ -8,7 +8,7 @@ gives a doubt. A stated contact without an actor of that kind in the scenario is
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import ClassVar, Literal
 
@@ -35,6 +35,18 @@ _HARDLY_RAD = math.radians(20)
 _STILL: tuple[Maneuver, ...] = ("stopped", "parked")
 _ALONG: tuple[Maneuver, ...] = ("straight", "slowing", "stopped", "negotiating_curve")
 _TURNS: tuple[Maneuver, ...] = ("turn_left", "turn_right", "u_turn")
+_DEEDS: tuple[Maneuver, ...] = (
+    "lane_change_left", "lane_change_right", "merge", "overtaking", "crossing_centerline", "departing_road_left",
+    "departing_road_right", "backing",
+)  # fmt: skip
+"""Maneuvers beside turns and stops that a sentence may state."""
+_ALIKE: tuple[tuple[Maneuver, ...], ...] = (
+    ("overtaking", "crossing_centerline", "lane_change_left"), ("merge", "lane_change_left"),
+    ("merge", "lane_change_right"),
+)  # fmt: skip
+"""Maneuvers that one course may be called by."""
+_SPEED_MPH = 5
+"""As far as a range's middle, or km/h rounded, may be off."""
 _Ways = Mapping[tuple[str, Literal["forward", "backward"]], Way]
 """Ways of a road spec by road and direction."""
 
@@ -43,12 +55,14 @@ class BehaviorNarrative(Validator):
     """Checks that a scenario's behavior has the vehicles, headings, maneuvers and first contact of the narrative."""
 
     stage: ClassVar[str] = "scenario"
-    version: ClassVar[str] = "5"
+    version: ClassVar[str] = "6"
 
     areas: Literal["question", "note"] = "question"
     """Severity if the text does not allow a declared side of contact."""
     maneuvers: Literal["question", "note"] = "question"
     """Severity if a stated turn, stop or straight course is missed."""
+    every: bool = True
+    """Also asks about other stated maneuvers (lane changes, a crossed center line, backing ...) and told speeds."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """Contradictions, vehicles first; nothing for scenarios without a behavior or texts without vehicles."""
@@ -64,10 +78,10 @@ class BehaviorNarrative(Validator):
             ways = {(w.road.id, w.direction): w for w in ways_of(spec)}
             found += [*_headings(behavior, reading, spec, ways), *_following(behavior, reading, spec, ways)]
             found += _exits(behavior, reading, spec, ways)
-        if self.maneuvers == "question":
-            found += _maneuvers(behavior, reading, spec)
-        else:
-            found += [f.model_copy(update={"severity": "note"}) for f in _maneuvers(behavior, reading, spec)]
+        deeds = list(_maneuvers(behavior, reading, spec, _differs if self.every else _contradicts))
+        asked = self.maneuvers == "question"
+        found += deeds if asked else [f.model_copy(update={"severity": "note"}) for f in deeds]
+        found += _speeds(behavior, reading) if self.every else ()
         return [*found, *contact_findings(behavior, reading, self.areas), *near_crash_findings(behavior, reading)]
 
 
@@ -156,14 +170,29 @@ def _better_ways(wanted: float, ways: tuple[Way, ...], spec: RoadSpec) -> str:
 
 
 # ------------------------------------------------------------------ maneuvers
-def _maneuvers(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec | None) -> Iterator[Finding]:
+def _maneuvers(
+    behavior: BehaviorSpec, reading: Reading, spec: RoadSpec | None, differ: Callable[[Maneuver, Maneuver], bool]
+) -> Iterator[Finding]:
     for actor in behavior.actors:
         fact = reading.crash.vehicle(actor.id)
-        if fact is None or not fact.maneuver_stated or not _contradicts(actor.maneuver, fact.maneuver):
+        if fact is None or not fact.maneuver_stated or not differ(actor.maneuver, fact.maneuver):
             continue
         found = _finding(f"the report tells another maneuver of {actor.id}", f"{actor.id}.maneuver", actor.maneuver,
                          f"use {fact.maneuver}", holds=courses(fact, spec))  # fmt: skip
         yield as_question(found, reading, [f"vehicles.{actor.id}.maneuver"], fact.maneuver)
+
+
+def _speeds(behavior: BehaviorSpec, reading: Reading) -> Iterator[Finding]:
+    """A told speed that an actor lacks or that is far from its own."""
+    for actor in behavior.actors:
+        fact = reading.crash.vehicle(actor.id)
+        if fact is None or fact.speed_mph is None or actor.maneuver in _STILL or not fact.speed_mph:
+            continue
+        if actor.speed_mph is None or abs(actor.speed_mph - fact.speed_mph) > _SPEED_MPH:
+            said = "null" if actor.speed_mph is None else str(actor.speed_mph)
+            found = _finding(f"the report tells a speed of {actor.id}", f"{actor.id}.speed_mph", said,
+                             f"use {fact.speed_mph}")  # fmt: skip
+            yield as_question(found, reading, [f"vehicles.{actor.id}.speed_mph"], fact.speed_mph)
 
 
 def _exits(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec, ways: _Ways) -> Iterator[Finding]:
@@ -210,6 +239,14 @@ def _choices(fact: VehicleFacts, spec: RoadSpec | None) -> list[dict[str, tuple[
     if not choices:  # the road as written has no such turn: what is left to hold is the start
         choices = [{k: v for k, v in start.items() if k != "exit_road"} for start in starts] or [does]
     return choices
+
+
+def _differs(said: Maneuver, told: Maneuver) -> bool:
+    """Whether it is another maneuver than stated, and not only another word for it."""
+    if _contradicts(said, told):
+        return True
+    alike = any(said in words and told in words for words in _ALIKE)
+    return said != told and told in _DEEDS and not alike
 
 
 def _contradicts(said: Maneuver, told: Maneuver) -> bool:

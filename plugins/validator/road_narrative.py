@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from plugins.validator._road_holds import along, carrying, ends, laid, totals
-from plugins.validator._road_told import KIND, Asked, asked_of, lane_fields, used_by
+from plugins.validator._road_told import KIND, Asked, asked_control, asked_of, lane_fields, used_by
 from sgcad_core.asking.schema_holds import SOME_LANES
 from sgcad_core.case.records import Evidence, Finding, Hold, RoadNetwork, Scenario, Severity
 from sgcad_core.errors import InvalidOutput
@@ -41,10 +41,12 @@ class RoadNarrative(Validator):
     """
 
     stage: ClassVar[str] = "road"
-    version: ClassVar[str] = "8"
+    version: ClassVar[str] = "9"
     tolerance_deg: float = 35.0
     """Allowed angle between a drawn road and the compass direction that the report names."""
     limit_tolerance_mph: float = 3.0
+    every: bool = True
+    """Also asks about the control of the junction."""
 
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """Worst first; none for a network that did not compile or a report that states nothing."""
@@ -57,7 +59,9 @@ class RoadNarrative(Validator):
         reading, facts = evidence.report.reading, evidence.report.reading.roads
         drawn, legs, pictured = compiled_roads(graph), junctions(graph), bool(evidence.report.diagrams)
         asked = [
-            *_no_circle(facts, graph), *self._legs(facts, len(legs[0]) if legs else 0, pictured),
+            *_no_circle(facts, graph),
+            *(asked_control(facts, artifact.spec) if self.every else ()),
+            *self._legs(facts, len(legs[0]) if legs else 0, pictured),
             *self._paths(facts, legs, pictured), *self._directions(facts, drawn), *self._one_way(facts, drawn),
             *self._lanes(facts, drawn, pictured), *(() if pictured else self._lanes_one_way(facts, drawn)),
         ]  # fmt: skip

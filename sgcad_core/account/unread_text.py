@@ -86,8 +86,9 @@ def _called(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
 
 
 def _further(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
-    """Vehicles without a number, in reports that number the others."""
-    if made.reading.crash.unnumbered:
+    """Vehicles without a number, in reports that number the others, where the scenario has none beside these."""
+    numbered = {v.id for v in made.reading.crash.vehicles}
+    if made.reading.crash.unnumbered or any(name.startswith("V") for name in made.tracks.keys() - numbered):
         return
     for match in _FURTHER.finditer(sentence.text):
         yield _lacks(sentence, "further", match[0].lower(), f"{match[0]!r} is named", "it is not in the scenario")

@@ -12,7 +12,9 @@ from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.notes import Note
 from sgcad_core.account.records import Disagreement, Item, Kind, Verdict
 from sgcad_core.account.words import phrase
+from sgcad_core.kinds import ALLEY, DRIVEWAY
 from sgcad_core.metrics.untold_places import untold_places
+from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.provenance.crash_provenance import CONFIDENCE
 from sgcad_core.records.facts import Fact
 
@@ -103,13 +105,19 @@ def guesses(made: ExecutedCase) -> Iterator[Item]:
         return
     for name in (first.striker, first.struck):
         vehicle = crash.vehicle(name)
-        if vehicle is None or vehicle.heading_stated or vehicle.maneuver == "parked":
+        if vehicle is None or vehicle.heading_stated or vehicle.maneuver == "parked" or _backs_out(made, vehicle):
             continue
         if not _told_beside(made, name) and not _from_behind(first.striker_area, first.struck_area):
             yield Item(
                 kind="guessed", field=f"vehicles.{name}.heading", subject=name, value=vehicle.heading,
                 text=phrase(f"vehicles.{name}.heading", vehicle.heading), reason="told nowhere",
             )  # fmt: skip
+
+
+def _backs_out(made: ExecutedCase, vehicle: VehicleFacts) -> bool:
+    """Whether it backs out of a driveway whose side is told: its front points into the driveway."""
+    junction = made.reading.roads.junction
+    return vehicle.maneuver == "backing" and junction.kind in (DRIVEWAY, ALLEY) and junction.stem_stated
 
 
 def _told_beside(made: ExecutedCase, name: str) -> bool:

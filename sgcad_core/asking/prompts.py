@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
@@ -184,48 +184,3 @@ def load_prompt(name: str, **slots: str) -> str:
             f"prompt {name!r} ({file}): has slots {sorted(wanted)}, was given {sorted(slots)}; make them the same"
         )
     return _SLOT.sub(lambda match: slots[match[1]], text).strip()
-
-
-def repair_text(previous_answer: str, findings: Sequence[Finding]) -> str:
-    """What stands last in the prompt of a further attempt: the answer before (if known), what is wrong with it, and
-    what the report may tell otherwise, with the sentences."""
-    before = f"Your previous answer was:\n{previous_answer.strip()}\n\n" if previous_answer.strip() else ""
-    asked = [f for f in findings if f.severity == "question"]
-    faults = [f for f in findings if f.severity != "question"]
-    parts = (
-        [f"Your previous answer cannot be used as it is. Faults found:\n{_numbered(f.line() for f in faults)}"]
-        if faults
-        else []
-    )
-    parts += [f"Look once more at these places of the report:\n{_numbered(map(_question, asked))}"] if asked else []
-    end = "Look at the evidence again, mend every fault, keep what was right, and give the whole answer anew."
-    return before + "\n\n".join([*parts, end if faults else _SETTLE])
-
-
-_FAULTY = "Your previous answer cannot be used as it is. Faults found:"
-_DOUBLE = "Look once more at these places of the report:"
-_MEND = "Look at the evidence again, mend every fault, keep what was right, and give the whole answer anew."
-_SETTLE = "Nothing else is asked: keep what is right, and give the whole answer anew."
-_QUOTED = 300
-"""Most characters of a quoted sentence."""
-
-
-def _words(value: object) -> str:
-    return ", ".join(map(str, value)) if isinstance(value, tuple) else str(value)
-
-
-def _numbered(lines: Iterable[str]) -> str:
-    return "\n".join(f"{i}. {line}" for i, line in enumerate(lines, 1))
-
-
-def _question(finding: Finding) -> str:
-    """A question with the sentence that it rests on; the answer may stand."""
-    if finding.told is None:
-        return finding.line()
-    told, where = finding.told, f" at {finding.where}" if finding.where else ""
-    value = f"your value {finding.value!r}" if finding.value else "your answer"
-    said = _short(told.sentence, _QUOTED)
-    return (
-        f"This sentence may tell {told.field} = {_words(told.value)}: {said!r} ({finding.what}{where}). "
-        f"Keep {value} if the words of the report tell it, or change it; decide by the words alone."
-    )

@@ -1,9 +1,9 @@
 """The one refinement loop: write, judge, ask again with the findings; every attempt is kept.
 
 Knows records, errors and validators; no format, no model, no Prefect. Refinement is not retry: each attempt sees what
-was wrong with the last. Hard findings are asked about until they are mended or ten attempts are made. Questions and
-doubts are put once: an answer that stands by its value settles them. A writer that asks no model gives the same answer
-twice, so it gets one attempt, and a second one if it mends what was found.
+was wrong with all before. Hard findings are asked about until they are mended or ten attempts are made. Questions are
+put once, with their sentence: an answer that stands by its value settles them. Doubts are not put to a model. A writer
+that asks no model gives the same answer twice, so it gets one attempt, and a second one if it mends what was found.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from sgcad_core.asking.prompts import repair_text
+from sgcad_core.asking.repairs import repair_of
 from sgcad_core.asking.schema_holds import narrowed_schema
 from sgcad_core.case.records import (
     Attempt,
@@ -157,15 +157,15 @@ class Refinement:
     def _open(self, turns: Sequence[Turn]) -> bool:
         """Whether the last attempt leaves something soft that another one would hear of.
 
-        A model that reads findings is asked once about each; one that does not, draws anew while questions are left,
-        or doubts that narrow its schema.
+        A model that reads findings is asked once about each that rests on a sentence; one that does not, draws anew
+        while questions are left, or doubts that narrow its schema.
         """
         soft = [f for f in turns[-1].attempt.findings if f.severity in SOFT]
         if not self.ask:
             return any(f.severity in self.mends for f in soft)
         if self.show_findings:
             put = {f.subject for turn in turns[:-1] for f in turn.attempt.findings}
-            return any(f.subject not in put for f in soft)
+            return any(f.subject not in put for f in soft if f.told)
         return any(f.severity == "question" or (self.hold_findings and f.holds) for f in soft)
 
     def turns(self, earlier: Sequence[Turn] = ()) -> list[Turn]:
@@ -180,7 +180,7 @@ class Refinement:
         number = len(turns) + 1
         last = turns[-1].attempt if turns else None
         findings = tuple(f for f in last.findings if f.severity in _ASKING) if last else ()
-        repair = repair_text(last.answer, findings) if last and findings and self.show_findings else ""
+        repair = repair_of([turn.attempt for turn in turns]) if self.ask and self.show_findings else ""
         holds = _holds(turns) if self.hold_findings else ()
         return self._turn(findings, number, repair, holds)
 

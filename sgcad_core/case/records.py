@@ -72,6 +72,26 @@ class Token(Record):
     forced: bool = False
 
 
+class Conflict(Record):
+    """A token at which evidence and prior disagreed: the best token of either row, and the one that was written."""
+
+    field: str
+    """JSON path of the field that the token belongs to."""
+    evidence: str
+    prior: str
+    chosen: str
+
+    @property
+    def winner(self) -> Literal["evidence", "prior", "neither"]:
+        """Whose token was written."""
+        return "evidence" if self.chosen == self.evidence else "prior" if self.chosen == self.prior else "neither"
+
+    def line(self) -> str:
+        """One line: the field, both tokens, and which was written."""
+        written = f", written {self.chosen!r}" if self.winner == "neither" else ""
+        return f"{self.field}: evidence {self.evidence!r}, prior {self.prior!r}{written} ({self.winner})"
+
+
 class Generation(Record):
     """A model's answer with its tokens and cost."""
 
@@ -82,6 +102,8 @@ class Generation(Record):
     """JSON path of an answer field -> log p(y|c,x) - log p(y|x) summed over its tokens, nats."""
     told: Mapping[str, float] = {}
     """The same path -> probability that the evidence tells the value, by heads of the model's own; empty without."""
+    conflicts: tuple[Conflict, ...] = ()
+    """Where the rows with and without the evidence wanted other tokens, in order; empty with one row."""
     prompt_tokens: int = 0
     model_calls: int = 0
     seconds: float = 0.0

@@ -50,6 +50,8 @@ _MANEUVER_MISSED = 3.0
 """Cost of a stated maneuver that is not visible: more than any two parts of the course after the contact."""
 WAITS_S = 1.5
 """Time for which a vehicle that starts from rest is seen standing."""
+_LEAST_LEAD_S = 3.0
+"""Where a fast vehicle's road is too short for the usual time before the contact, it starts where the road does."""
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
 _SPEED_SHOWS_S = 0.3
@@ -203,7 +205,8 @@ class _Cast:
         lead = max([lead, *(since + WAITS_S for since in rest_s)])
         driven = ((o, m, own) for o, m, own in pair if not m.standing and m.starts_s is None)
         room = min((own - m.time_at(o.role.course.first_m) for o, m, own in driven), default=LEAD_S[1])
-        contact = math.ceil(min(max(min(lead, room), LEAD_S[0]), LEAD_S[1]) / STEP_S)
+        least = min(LEAD_S[0], max(room, _LEAST_LEAD_S))
+        contact = math.ceil(min(max(min(lead, room), least), LEAD_S[1]) / STEP_S)
         after = AFTER_S + self._runs_on_s()
         again = frozenset(name for c in self.contacts[1:] for name in (c.striker, c.struck))
         scene = Scene(contact + round(after / STEP_S) + 1, contact, again, self.behavior.surface)

@@ -39,6 +39,8 @@ class ChunkResult:
     picked: list[int]
     picked_with: list[float]
     picked_without: list[float]
+    best: Sequence[tuple[int, int]] = ()
+    """The best token with and without context at every picked position; empty with one row."""
     states: Sequence[torch.Tensor] = ()
     """States of the first row with context at every position, (hidden,); empty unless the loop watches them."""
 
@@ -166,6 +168,8 @@ class Job:
             if choices and choices[i] == 0:
                 raise DoesNotFit(f"no token may follow {self.text()[-60:]!r}", self.path())
             self._accept(result.picked[i], bool(choices) and choices[i] == 1)
+            if result.best and result.best[i][0] != result.best[i][1]:
+                self.answer.rivals[len(self.answer.ids) - 1] = result.best[i]
             one = slice(i, i + 1)
             self._note(result.picked_with[one], result.picked_without[one], result.states[known + i : known + i + 1])
             if i == right and not self._take(result.picked[i]):

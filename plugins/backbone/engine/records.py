@@ -74,6 +74,9 @@ class Answer:
     without_context: list[float] = field(default_factory=list)
     """Empty if the row without context was not run."""
     forced: list[bool] = field(default_factory=list)
+    rivals: dict[int, tuple[int, int]] = field(default_factory=dict)
+    """Place of a token -> the best token with context and the best one without, where the grammar allows both and they
+    differ."""
     states: list[Any] = field(default_factory=list)
     """What the output embedding got of the first row with context before each token, (hidden,) in fp32 on the host;
     empty unless the loop watches them."""

@@ -99,14 +99,14 @@ def _score(one: ScoredChunk, job: Job, logits: Sequence[Tensor], words: int) -> 
     if job.closing or not (finite.is_cuda or bool(finite)):
         return
     scored = slice(known, known + len(job.guesses) + 1)
-    sound, picked = _all_picked(job, [row.logits[scored] for row in rows], mask, one.choices, finite)
-    one.parts += [part.double() for part in (sound, picked, *(row.logp(known, picked) for row in rows))]
+    sound, *tokens_of = _all_picked(job, [row.logits[scored] for row in rows], mask, one.choices, finite)
+    picked = tokens_of[0]
+    one.parts += [part.double() for part in (sound, picked, *(row.logp(known, picked) for row in rows), *tokens_of[1:])]
 
 
-def _all_picked(
-    job: Job, rows: list[Tensor], mask: Mask | None, left: list[int], finite: Tensor
-) -> tuple[Tensor, Tensor]:
-    """Whether the decoder's scores are valid, and one token for each position; forced positions are not scored."""
+def _all_picked(job: Job, rows: list[Tensor], mask: Mask | None, left: list[int], finite: Tensor) -> tuple[Tensor, ...]:
+    """Whether the decoder's scores are valid, one token for each position, and the best token of each row there if
+    there are two; forced positions are not scored."""
     free = [i for i in range(len(rows[0])) if mask is None or left[i] != 1]
     if mask is None or len(free) == len(left):
         return _picked(job, rows, mask, free, finite)
@@ -114,13 +114,17 @@ def _all_picked(
     picked = torch.empty(len(left), dtype=torch.long, device=finite.device)
     picked[forced] = torch.from_numpy(single_choices(mask[forced])).to(finite.device)
     sound = torch.ones(1, dtype=torch.bool, device=finite.device)
+    best = [picked.clone() for _ in rows] if len(rows) > 1 else []
     if free:
-        sound, picked[free] = _picked(job, [row[free] for row in rows], mask[free], free, finite)
-    return sound, picked
+        sound, picked[free], *found = _picked(job, [row[free] for row in rows], mask[free], free, finite)
+        for whole, part in zip(best, found, strict=True):
+            whole[free] = part
+    return sound, picked, *best
 
 
-def _picked(job: Job, rows: list[Tensor], mask: Mask | None, free: list[int], finite: Tensor) -> tuple[Tensor, Tensor]:
-    """One token for each position; if plausibility and grammar leave none, the most likely one with context."""
+def _picked(job: Job, rows: list[Tensor], mask: Mask | None, free: list[int], finite: Tensor) -> tuple[Tensor, ...]:
+    """One token for each position; if plausibility and grammar leave none, the most likely one with context. Then the
+    best token of each row that the grammar allows, if there are two."""
     full = [row.to(torch.float32, copy=True) for row in rows]
     scores = job.request.policy.scores(full[0], full[1] if len(full) > 1 else None)
     if (
@@ -146,7 +150,8 @@ def _picked(job: Job, rows: list[Tensor], mask: Mask | None, free: list[int], fi
         raise _unsound(job, "scores are NaN or inf")
     picked = _drawn(job, scores, free)
     inside = ((picked >= 0) & (picked < scores.shape[-1])).all()[None]
-    return sound & inside, picked.clamp(0, scores.shape[-1] - 1)
+    best = [(row if may is None else row.masked_fill(~may, NEVER)).argmax(-1) for row in rows] if len(rows) > 1 else []
+    return sound & inside, picked.clamp(0, scores.shape[-1] - 1), *best
 
 
 def _drawn(job: Job, scores: Tensor, free: list[int]) -> Tensor:
@@ -191,4 +196,5 @@ def _set_result(job: Job, one: ScoredChunk, lists: list[list[float]]) -> None:
         picked=[int(token) for token in scored[1]] if scored else [],
         picked_with=scored[2] if scored else [],
         picked_without=scored[3] if scored and rows > 1 else [],
+        best=[(int(c), int(q)) for c, q in zip(scored[4], scored[5], strict=True)] if scored and rows > 1 else [],
     )

@@ -183,8 +183,9 @@ def _whose(
     """ "... for the westbound lane" behind the value, else the subject before it."""
     tail = rule("road_details.for_whom").match(behind)
     tail = None if behind.startswith(",") and names.axis(before) else tail
-    for whole in ([tail[1]] if tail else []) + [before]:
-        named = _named(whole, names) if whole is before else names.axis(whole)
+    nearest = [before.rpartition(";")[2]] if ";" in before else []
+    for whole in ([tail[1]] if tail else []) + nearest + [before]:
+        named = names.axis(whole) if tail and whole is tail[1] else _named(whole, names)
         if axis := named or axis_in(whole.rpartition("(")[2]):
             return axis, False
         part = rule("speed_limits.aside").sub(" ", whole)

@@ -6,7 +6,7 @@ never reach a prompt. Motion is never touched: a sentence goes only if it tells 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.text.traced_text import TracedText, joined
@@ -66,18 +66,54 @@ def _parts_without_persons(sentences: Iterable[TracedText]) -> Iterator[TracedTe
 
 
 def _without_persons(sentence: TracedText) -> TracedText:
-    """A sentence without the clauses that tell of persons alone; its end mark and line break stay."""
+    """A sentence without the clauses that tell of persons alone; its end mark and line break stay.
+
+    Clauses go whole. What is left begins with the subject of the first clause if that went and the next one has none,
+    and a clause that cannot stand by itself ("which then rolled over") keeps the whole sentence.
+    """
     if not _PERSON_ONLY.search(sentence.text):
         return sentence
     ends = rule("privacy.body_and_end").fullmatch(sentence.text).start(2)  # type: ignore[union-attr]
     body, end = sentence.cut(0, ends), sentence.cut(ends, len(sentence.text))
     clauses = body.sub(rule("privacy.unhurt"), "").split(rule("privacy.clause"))
-    kept = [clause for clause in clauses if not _tells_of_persons_alone(clause.text)]
-    if not kept or (kept[0] is not clauses[0] and not _CRASH.search("".join(k.text for k in kept))):
-        kept = []  # what is left has lost its subject and tells of no motion
-    text = joined(kept).strip(" ,;").sub(rule("privacy.connector"), "")
+    gone = [_tells_of_persons_alone(clause.text) for clause in clauses]
+    left = "".join(c.text for c, out in zip(clauses, gone, strict=True) if not out)
+    if not any(gone) or rule("privacy.leaning").match(_first_left(clauses, gone)):
+        return joined([*clauses, end])
+    if not _CRASH.search(left) and (gone[0] or rule("privacy.person_subject").match(left)):
+        return end.strip(".!? ")  # what is left tells of a person, or has lost its subject and tells of no motion
+    text = (
+        joined(list(_kept(clauses, gone)))
+        .strip(" ,;")
+        .sub(rule("privacy.connector"), "")
+        .sub(rule("privacy.left_open"), "")
+    )
+    if gone[0] and not rule("privacy.verb_begins").match(text.text):
+        text = text.sub(rule("privacy.small_beginning"), lambda m: m.group(0).upper(), 1)
+    elif gone[0] and (lost := _subject(clauses[0])):
+        text = joined([lost, text], " ")
     space = body.cut(0, rule("privacy.leading_space").match(body.text).end())  # type: ignore[union-attr]
     return joined([space, text, end]) if text.text else end.strip(".!? ")
+
+
+def _first_left(clauses: Sequence[TracedText], gone: Sequence[bool]) -> str:
+    """The first clause that stays, if the first of all goes."""
+    return next((c.text for c, out in zip(clauses, gone, strict=True) if not out), "") if gone[0] else ""
+
+
+def _kept(clauses: Sequence[TracedText], gone: Sequence[bool]) -> Iterator[TracedText]:
+    """Clauses that stay; behind an insertion that goes, its closing comma goes as well."""
+    inserted = False
+    for clause, out in zip(clauses, gone, strict=True):
+        if not out:
+            yield clause.cut(1, len(clause.text)) if inserted and clause.text.startswith(",") else clause
+        inserted = out and bool(rule("privacy.insertion").match(clause.text))
+
+
+def _subject(clause: TracedText) -> TracedText | None:
+    """The subject of a clause that went, for a verb that stays; None where none is seen."""
+    found = rule("privacy.subject").match(clause.text)
+    return clause.cut(found.start("subject"), found.end("subject")) if found else None
 
 
 def _tells_of_persons_alone(clause: str) -> bool:

@@ -84,6 +84,8 @@ def _owned(statement: Statement) -> Iterator[tuple[str, Speed]]:
             yield statement.subject, speed
             continue
         before = [m for m in named if m.end() <= speed.start]
+        if before and rule("speeds.beside").search(statement.text[: before[-1].end()]):
+            continue  # of the one that drives beside it
         if before and _of_striker(statement.text[: before[-1].end()], statement.text[before[-1].end() :]):
             continue
         if before and rule("speeds.between").fullmatch(statement.text, before[-1].end(), speed.start):

@@ -375,3 +375,16 @@ def test_other_weights_in_the_same_folder_are_another_stamp_and_other_notes_are_
     stamps.append(HfVision(model=str(tmp_path)).stamp)
     assert stamps[0] == stamps[1] != stamps[2]
     assert HfVision(model="Qwen/Qwen2.5-VL-7B-Instruct").stamp == ""
+
+
+def test_tokens_at_which_both_rows_disagree_are_kept_with_their_fields(backbones: dict[str, HfVision]) -> None:
+    kept = []
+    for seed in range(4):
+        found = backbones["text_only"].generate(folders.context(), QUERY, Cad(alpha=2.0, temperature=2.0), seed=seed)
+        leaves = {*found.grounding, "$"}
+        assert all(c.evidence != c.prior and c.field in leaves for c in found.conflicts)
+        assert len(found.conflicts) <= sum(not t.forced for t in found.tokens)
+        kept += found.conflicts
+    assert {c.winner for c in kept} <= {"evidence", "prior", "neither"}
+    assert kept
+    assert backbones["text_only"].generate(folders.context(), QUERY, Greedy()).conflicts == ()

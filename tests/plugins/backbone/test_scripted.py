@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
-from plugins.backbone.scripted import Scripted
+from plugins.backbone.scripted import Scripted, question_digest
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
 from sgcad_core.case.records import Context, Query, Stage
@@ -103,3 +103,34 @@ def test_a_missing_script_is_a_config_error(tmp_path: Path) -> None:
 def test_a_contrastive_decoder_is_refused() -> None:
     with pytest.raises(ConfigError, match="Cad needs logits; the scripted backbone gives none"):
         Scripted(answers=("a",)).generate(CONTEXT, Query(task=""), Cad())
+
+
+def test_a_folder_of_dialogues_answers_by_case_stage_and_attempt(tmp_path):
+    (tmp_path / "a.yaml").write_text("- {case: c1, road: [{a: 1}], scenario: [{a: 2}, {a: 3}]}\n")
+    (tmp_path / "b.yaml").write_text("- {case: c2, about: plain, road: [{a: 4}]}\n")
+    backbone = Scripted(file=tmp_path)
+
+    def said(case, stage, attempt):
+        query = Query(task="t", case=case, stage=stage, attempt=attempt)
+        return backbone.generate(Context(narrative=""), query, Greedy()).text
+
+    assert [said("c1", "scenario", n) for n in (1, 2, 3)] == ['{"a":2}', '{"a":3}', '{"a":3}']
+    assert (said("c1", "road", 2), said("c2", "road", 1)) == ('{"a":1}', '{"a":4}')
+
+
+def test_answers_to_another_question_are_refused(tmp_path):
+    query = Query(task="t", case="c1", stage="road")
+    (tmp_path / "a.yaml").write_text("- {case: c1, road: [{a: 1}]}\n")
+    (tmp_path / "asked.yaml").write_text(f"c1: {{road: {question_digest(query)}}}\n")
+    backbone = Scripted(file=tmp_path)
+    assert backbone.generate(Context(narrative=""), query, Greedy()).text == '{"a":1}'
+    changed = query.model_copy(update={"answer_schema": {"type": "object"}})
+    with pytest.raises(ConfigError, match="has changed since its answers were recorded"):
+        backbone.generate(Context(narrative=""), changed, Greedy())
+
+
+def test_a_broken_file_of_digests_is_named(tmp_path):
+    (tmp_path / "asked.yaml").write_text("c1: 5\n")
+    (tmp_path / "a.yaml").write_text("- {case: c1, road: [{a: 1}]}\n")
+    with pytest.raises(ConfigError, match=r"asked\.yaml"):
+        Scripted(file=tmp_path).generate(Context(narrative=""), Query(task="t", case="c1", stage="road"), Greedy())

@@ -291,3 +291,26 @@ def test_one_that_turned_before_it_was_struck_from_behind_may_head_elsewhere() -
     text = "V1 was northbound and turned left. V2 was westbound. The front of V2 struck the rear of V1."
     behavior = behavior_of_facts(read(text).crash, SPEC)
     assert not [f for f in _found(behavior, text) if "head different ways" in f.what]
+
+
+TOLD = (
+    "V1 was traveling north at 40 mph and changed lanes to the left. V2 was traveling north. "
+    "The left side of V1 struck the right side of V2."
+)
+
+
+def test_a_told_speed_that_is_missing_or_far_off_is_a_question() -> None:
+    told = behavior_of_facts(read(TOLD).crash, SPEC)
+    for said, asked in ((None, True), (55, True), (37, False), (40, False)):
+        actors = (told.actors[0].model_copy(update={"speed_mph": said}), *told.actors[1:])
+        found = [f for f in _found(told.model_copy(update={"actors": actors}), TOLD) if f.where == "V1.speed_mph"]
+        assert bool(found) is asked
+        assert all(f.severity == "question" and f.told and f.told.value == 40 for f in found)
+
+
+def test_every_told_maneuver_is_asked_about_unless_turns_alone_are_wanted() -> None:
+    told = behavior_of_facts(read(TOLD).crash, SPEC)
+    actors = (told.actors[0].model_copy(update={"maneuver": "straight"}), *told.actors[1:])
+    wrong = told.model_copy(update={"actors": actors})
+    assert "V1.maneuver" in {f.where for f in _found(wrong, TOLD) if f.severity == "question"}
+    assert "V1.maneuver" not in {f.where for f in _found(wrong, TOLD, every=False)}

@@ -376,3 +376,16 @@ def test_a_crash_in_a_parking_garage_is_refused_and_one_at_a_railway_crossing_is
     assert "which cannot be drawn yet" in refused.what
     noted = findings("The crash occurred at a railroad crossing. V1 was northbound and struck the rear of V2.", plain)
     assert [found.severity for found in noted if found.value == "a railway crossing"] == ["note"]
+
+
+def test_a_told_control_that_stands_nowhere_is_a_question_with_its_sentence() -> None:
+    text = (
+        "The crash occurred at a four-leg intersection controlled by a traffic signal. V1 was northbound and struck V2."
+    )
+    legs = [leg(way, 1, 1) for way in ("N", "E", "S", "W")]
+    (asked,) = [f for f in findings(text, network(*legs)) if f.where == "junction.control"]
+    assert (asked.severity, asked.value) == ("question", "none")
+    assert asked.told is not None
+    assert "traffic signal" in asked.told.sentence
+    signal = [one.model_copy(update={"control": "signal"}) for one in legs]
+    assert not [f for f in findings(text, network(*signal)) if f.where == "junction.control"]

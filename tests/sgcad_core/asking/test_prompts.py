@@ -10,8 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.asking import prompts
-from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer, repair_text
-from sgcad_core.case.records import Finding
+from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
 from sgcad_core.records.specs import BehaviorSpec, Refusal, RoadLayout, RoadSpec
 
@@ -135,10 +134,3 @@ def test_a_prompt_needs_exactly_its_slots(tmp_path, monkeypatch):
         load_prompt("rod")
     with pytest.raises(ConfigError, match="no such file"):
         load_prompt("../road", what="x")
-
-
-def test_a_repair_shows_the_answer_and_numbers_the_faults():
-    text = repair_text("{}", [Finding(source="s", what="no hub"), Finding(source="s", what="no lane")])
-    assert "{}" in text
-    assert "1. [s] no hub" in text
-    assert "2. [s] no lane" in text

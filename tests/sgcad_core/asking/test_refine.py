@@ -5,7 +5,6 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from sgcad_core.asking.prompts import repair_text
 from sgcad_core.asking.refine import DOUBTFUL_ATTEMPTS, MAX_ATTEMPTS, Refinement, Turn, _holds, refine
 from sgcad_core.case.records import (
     Attempt,
@@ -33,7 +32,17 @@ class Judge(Validator):
 
     def findings(self, artifact, evidence):
         words = artifact.log.split()
-        return [Finding(source="judge", severity=word, what=f"a {word}", value="lanes") for word in words]
+        told = Told(field="lanes", value=2, by="rules", confidence=0.9, start=0, end=4, sentence="Two lanes.")
+        return [
+            Finding(
+                source="judge",
+                severity=word,
+                what=f"a {word}",
+                value="lanes",
+                told=told if word == "question" else None,
+            )
+            for word in words
+        ]
 
 
 class Toolless(Validator):
@@ -197,31 +206,25 @@ def test_a_stage_goes_on_turn_by_turn_as_at_once():
     ]
 
 
-@pytest.mark.parametrize("severity", ["doubt", "question"])
-def test_what_is_soft_is_asked_once_and_the_least_doubtful_is_kept(severity):
-    logs = f"{severity} {severity}", severity, ""
+def test_a_question_is_asked_once_and_the_answer_with_the_fewest_is_kept():
+    logs = "question question", "question", ""
     outcome = refine("road", by_log(*logs), [Judge()], evidence, ask=answer)
     assert (outcome.status, len(outcome.attempts), outcome.kept) == ("written", 2, 2)
-    assert outcome.artifact == RoadNetwork(log=severity)
+    assert outcome.artifact == RoadNetwork(log="question")
     assert outcome.told_by is outcome.attempts[1]
-    assert f"1. [judge] a {severity} (found lanes)" in outcome.attempts[1].prompt
+    assert "1. This sentence may tell lanes = 2: 'Two lanes.' (a question)." in outcome.attempts[1].prompt
 
 
-def test_a_new_question_is_put_though_an_old_one_is_settled():
-    outcome = refine("road", by_log("question", "question doubt", "question doubt"), [Judge()], evidence, ask=answer)
-    assert (outcome.status, len(outcome.attempts), outcome.kept) == ("written", 3, 1)
+def test_a_doubt_is_not_put_to_a_model():
+    outcome = refine("road", by_log("doubt", ""), [Judge()], evidence, ask=answer)
+    assert (outcome.status, len(outcome.attempts), outcome.kept) == ("written", 1, 1)
+    outcome = refine("road", by_log("repair doubt", ""), [Judge()], evidence, ask=answer)
+    assert "a doubt" not in outcome.attempts[1].prompt
 
 
-def test_a_question_quotes_its_sentence_and_leaves_the_answer_its_value():
-    told = Told(field="vehicles.V1.maneuver", value="turn_left", by="rules", confidence=0.9, start=0, end=20,
-                sentence="V1 was turning left.")  # fmt: skip
-    asked = Finding(source="n", severity="question", what="another maneuver", where="V1.maneuver", value="straight",
-                    told=told)  # fmt: skip
-    said = repair_text("{}", [asked])
-    assert "vehicles.V1.maneuver = turn_left: 'V1 was turning left.'" in said
-    assert "Keep your value 'straight'" in said
-    assert "cannot be used" not in said
-    assert "cannot be used" in repair_text("{}", [asked, Finding(source="n", what="no JSON")])
+def test_an_attempt_hears_of_every_former_one():
+    outcome = refine("road", by_log("repair", "repair repair", ""), [Judge()], evidence, ask=answer)
+    assert "- attempt 1, answer = lanes: [judge] a repair" in outcome.attempts[2].prompt
 
 
 def test_a_model_that_cannot_read_questions_draws_anew_a_few_times():
@@ -244,10 +247,10 @@ def test_a_writer_that_mends_gets_a_second_attempt(logs, status, attempts, kept)
 
 
 @pytest.mark.parametrize(("logs", "attempts", "kept"), [
-    (("doubt", ""), 2, 2), (("repair", "doubt", "repair", "repair", ""), 4, 2), (("doubt", "refuse"), 2, 1),
-    (("doubt", "repair", "doubt doubt", ""), 3, 1),
+    (("question", ""), 2, 2), (("repair", "question", "repair", "repair", ""), 4, 2), (("question", "refuse"), 2, 1),
+    (("question", "repair", "question question", ""), 3, 1),
 ])  # fmt: skip
-def test_a_doubted_artifact_stands_where_nothing_better_comes(logs, attempts, kept):
+def test_a_questioned_artifact_stands_where_nothing_better_comes(logs, attempts, kept):
     outcome = refine("road", by_log(*logs), [Judge()], evidence, ask=answer)
     assert (outcome.status, len(outcome.attempts), outcome.kept) == ("written", attempts, kept)
 
@@ -283,7 +286,7 @@ def test_the_loop_always_ends_in_one_of_three_ways(words, limit):
     assert [a.number for a in outcome.attempts] == list(range(1, len(outcome.attempts) + 1))
     expected = "written" if usable else "refused" if "refuse" in last else "exhausted"
     assert outcome.status == expected
-    assert all({"repair", "question", "doubt"} & set(found) for found in every[:-1])
+    assert all({"repair", "question"} & set(found) for found in every[:-1])
     if usable:
         soft = {i: (every[i - 1].count("question"), every[i - 1].count("doubt")) for i in usable}
         assert outcome.kept == min(usable, key=soft.__getitem__)

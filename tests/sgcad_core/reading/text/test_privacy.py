@@ -94,3 +94,67 @@ def test_an_ambulance_that_drives_is_no_patient() -> None:
 def test_what_a_watched_driver_does_keeps_its_subject_where_his_state_goes() -> None:
     kept = redact("Subject driver looks drowsy and drifts off the right side of the road.")
     assert kept == "Subject driver is driving and drifts off the right side of the road."
+
+
+DEEDS = [
+    "V1 was traveling north at 40 mph",
+    "V1 crossed the centerline",
+    "V1 rolled over twice",
+    "V1 veered onto the shoulder",
+    "V1 departed the road to the right",
+    "V1 accelerated",
+    "V1 lost control on the ice",
+    "V1 ran a red light",
+    "V1 skidded into the ditch",
+    "V1 spun around",
+    "V1 was stopped in the left lane",
+    "V1 backed out of a driveway",
+    "V1 avoided V2",
+]
+STATES = [
+    "The driver was drowsy",
+    "The driver of V1 was not injured",
+    "The air bags deployed in V1",
+    "The driver of V2 was wearing a lap and shoulder belt",
+    "Because of a medical condition the driver blacked out",
+    "V2 sustained disabling damage",
+    "Nobody was hurt",
+]
+JOINTS = [", and ", " and ", "; ", ", but ", ", "]
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.sampled_from(DEEDS), st.sampled_from(STATES), st.sampled_from(JOINTS), st.booleans())
+def test_nothing_that_tells_motion_place_speed_or_control_is_cut(deed, state, joint, first):
+    told = f"{deed}{joint}{state[0].lower()}{state[1:]}." if first else f"{state}{joint}{deed}."
+    assert deed in redact(told)
+
+
+PERSONS = [
+    "The driver of V1 was a 30-year-old male who was wearing his lap and shoulder belt.",
+    "The driver was wearing her lap and shoulder belts, and the air bag deployed.",
+    "The driver, a 24-year-old female, was wearing her lap belt and was transported to a hospital.",
+    "The front seat passenger was wearing his lap and shoulder belt.",
+    "The driver died and the passenger was wearing a lap belt.",
+    "She was 61, licensed, and complained of neck pain.",
+]
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.lists(st.sampled_from(MOTION + PERSONS), min_size=1, max_size=6))
+def test_sentences_go_whole_and_leave_no_stump(sentences):
+    assert redact(" ".join(sentences)) == " ".join(s for s in sentences if s in MOTION)
+
+
+@pytest.mark.parametrize(
+    ("told", "left"),
+    [
+        ("The driver, who had been drinking alcohol, lost control.", "The driver lost control."),
+        ("The driver of V1, a licensed 19-year-old male, accelerated.", "The driver of V1 accelerated."),
+        ("V1 was driven by a woman who wore a lap belt and who was treated.", "V1 was driven by a woman."),
+        ("The air bags of V1 fired, which then rolled over.", "The air bags of V1 fired, which then rolled over."),
+        ("V1 sustained disabling damage and was towed.", "V1 was towed."),
+    ],
+)  # fmt: skip
+def test_what_is_left_of_a_sentence_has_a_subject_and_an_end(told, left):
+    assert redact(told) == left
