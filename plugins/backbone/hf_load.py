@@ -72,6 +72,13 @@ def load(
     return Loaded(model, tokenizer, _template(tokenizer, place, revision), prepare, _evidence_heads(place, model))
 
 
+def load_tokenizer(name: str, revision: str | None = None) -> tuple[Any, str | None]:
+    """A model's tokenizer and chat template without its weights. Raises as `load`."""
+    place = _place(name)
+    tokenizer = _tokenizer(place, revision)
+    return tokenizer, _template(tokenizer, place, revision)
+
+
 def _with_dtype(options: Mapping[str, Any], device: str) -> dict[str, Any]:
     """The options with a dtype of torch in place of "native"."""
     if options.get("dtype") != "native":

@@ -56,6 +56,11 @@ class Engine:
         self.reason = ""
         self.halved = 0
 
+    @property
+    def computed_in(self) -> str:
+        """Number type of the model's weights."""
+        return str(self.model.dtype).removeprefix("torch.")
+
     def generate(self, request: Request) -> Answer:
         """Answers one request; blocks. Raises an EngineFault, or the exception of the decoder or the model."""
         future = self.submit(request)

@@ -84,5 +84,25 @@ class Answer:
     reused_tokens: int = 0
     """How many of them came from earlier calls."""
     model_calls: int = 0
-    """Forward passes that this report took part in, its prefills included."""
+    """Forward passes that this report took part in, its prefills included; requests, where a server has the model."""
     seconds: float = 0.0
+    notes: list[str] = field(default_factory=list)
+    """What the result should say of this answer."""
+
+
+class Loop(Protocol):
+    """What answers requests: the token loop of a model in this process, or a server's model verified token by token."""
+
+    window: int
+    """Tokens of a prompt and its answer together."""
+    ended: bool
+
+    @property
+    def computed_in(self) -> str:
+        """Number type of the model's weights, or whose model it is."""
+
+    def generate(self, request: Request) -> Answer:
+        """Answers one request; blocks."""
+
+    def end(self) -> None:
+        """Frees what it holds."""
