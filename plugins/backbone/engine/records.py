@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
+from plugins.backbone.engine.faults import TooLong
 from plugins.backbone.engine.grammar import Grammar
 
 
@@ -63,6 +64,15 @@ class Request:
     def prompts(self) -> list[Prompt]:
         """A row each: with context, without it if that is run, then the views."""
         return [prompt for prompt in (self.with_context, self.without_context, *self.views) if prompt is not None]
+
+    def hold_to(self, window: int) -> None:
+        """Raises TooLong if the longest prompt and the longest answer exceed a window, in tokens."""
+        longest = max(len(prompt.ids) for prompt in self.prompts)
+        if longest + self.max_new_tokens > window:
+            raise TooLong(
+                f"the prompt has {longest} tokens and the answer may have {self.max_new_tokens}, together "
+                f"{longest + self.max_new_tokens}; the model's window is {window}"
+            )
 
 
 @dataclass

@@ -67,6 +67,7 @@ class ServerLoop:
 
     def generate(self, request: Request) -> Answer:
         """Answers one request, every token decided here. Raises the engine's faults or the server's errors."""
+        request.hold_to(self.window)
         before = self.http.sent
         answer, count = self.verifier.answer(request)
         answer.prompt_tokens = sum(len(prompt.ids) for prompt in request.prompts)

@@ -50,7 +50,7 @@ class Speaker(ABC):
     """One server's protocol. Every method may raise the errors of `http.ServerHttp`."""
 
     named = 64
-    """Up to how many tokens asking for their values by `exact` is better than a larger top k."""
+    """Up to how many tokens asking for their values by `exact` costs less than a larger top k."""
 
     @abstractmethod
     def offer(self) -> Offer:

@@ -28,6 +28,8 @@ from plugins.backbone.server.rows import allowed_tokens, chosen_from, even, riva
 
 _SHORTEST = 4
 _LONGEST_IDLE = 15
+_NAMED_AT_LAST = 64
+"""Up to how many values are asked for by name where the largest top k does not decide."""
 _WIDER = 16
 """Factor on the top k while it does not decide."""
 
@@ -144,7 +146,7 @@ class Verifier:
         may: torch.Tensor | None,
         count: Count,
     ) -> Place:
-        """The place with the values that its choice depends on, by name if they are few, else by a larger k."""
+        """The place with the values that its choice depends on, by name where that is cheap, else by a larger k."""
         doubts = self._doubts(job, place, may)
         if len(doubts) <= self.speaker.named:
             place = self._named(rows, behind, place, doubts)
@@ -152,6 +154,8 @@ class Verifier:
         while top < self.most and self._doubts(job, place, may):
             top = min(_WIDER * top, self.most)
             (place,) = self._places(rows, behind, 1, top)
+        if (doubts := self._doubts(job, place, may)) and self.speaker.named < len(doubts) <= _NAMED_AT_LAST:
+            place = self._named(rows, behind, place, doubts)
         count.widened += 1
         count.open += bool(self._doubts(job, place, may))
         return place

@@ -23,6 +23,8 @@ _TOKEN_ID = "token_id:"  # noqa: S105 - vLLM's spelling of a token's number
 class Vllm(Speaker):
     """Speaks to one vLLM server."""
 
+    named = 0  # each value by name takes a prompt of its own, computed from its beginning
+
     def __init__(self, http: ServerHttp, model: str) -> None:
         self.http = http
         self.model = model

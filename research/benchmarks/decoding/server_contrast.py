@@ -28,7 +28,7 @@ from plugins.backbone.hf_vision import HfVision
 from plugins.backbone.openai_server import OpenAIServer
 from plugins.backbone.prompt import parts
 from plugins.decoder.cad import Cad
-from research.benchmarks.decoding.decode_setup import SCHEMA, tokenizer_of
+from research.benchmarks.decoding.decode_setup import tokenizer_of
 from research.benchmarks.decoding.gate import FIRST_MADE
 from research.benchmarks.decoding.served import serving
 from research.benchmarks.decoding.served_model import ServedModel
@@ -39,8 +39,20 @@ from sgcad_core.config import load
 from sgcad_core.errors import InvalidOutput
 
 ALPHAS = (0.3, 0.7, 1.5)
-TOKENS = 96
+TOKENS = {"mini": 128, "random": 32}
 _VOCABULARY = 600
+_SCHEMA = {
+    "type": "object",
+    "properties": {
+        "bearing": {"type": "string", "enum": ["N", "NE", "E", "SE", "S", "SW", "W", "NW"]},
+        "lanes_in": {"type": "integer", "minimum": 0, "maximum": 8},
+        "median": {"type": "string", "enum": ["none", "painted", "raised", "grass"]},
+        "name": {"type": "string", "maxLength": 3},
+    },
+    "required": ["bearing", "lanes_in", "median", "name"],
+    "additionalProperties": False,
+}
+"""A question that a model which has learned nothing answers within its limit."""
 
 
 @dataclass(frozen=True)
@@ -59,10 +71,13 @@ class Arm:
         return f"alpha {self.alpha:g}, beta {self.beta:g}, {'schema' if self.schema else 'no schema'}{limit}"
 
 
-ARMS = [
-    *(Arm(alpha, 0.0, schema, None) for alpha in ALPHAS for schema in (True, False)),
-    Arm(0.7, 0.1, True, 20),
-]
+ARMS = {
+    "mini": [Arm(alpha, 0.1, schema, None) for alpha in ALPHAS for schema in (True, False)],
+    "random": [
+        *(Arm(alpha, 0.0, schema, None) for alpha in ALPHAS for schema in (True, False)),
+        Arm(0.7, 0.1, True, 20),
+    ],
+}
 
 
 @dataclass
@@ -82,12 +97,13 @@ class Found:
 class Bench:
     """One model in process and behind a server."""
 
-    def __init__(self, folder: Path, protocol: str, mini: bool) -> None:
+    def __init__(self, name: str, folder: Path, protocol: str) -> None:
         self.served = ServedModel(folder, window=8192)
-        self.mini = mini
-        self.inside = HfVision(model=str(folder), device="cpu", dtype="float32", max_new_tokens=TOKENS)
+        self.mini, self.limit = name == "mini", TOKENS[name]
+        self.inside = HfVision(model=str(folder), device="cpu", dtype="float32", max_new_tokens=self.limit)
         self.fields = {
-            "model": "served", "tokenizer": str(folder), "protocol": protocol, "max_new_tokens": TOKENS
+
+            "model": "served", "tokenizer": str(folder), "protocol": protocol, "max_new_tokens": self.limit
         }  # fmt: skip
 
     def run(self, arm: Arm, seeds: Sequence[int], url: str) -> Found:
@@ -98,6 +114,7 @@ class Bench:
         server.load()
         found, decoder = Found(), Cad(alpha=arm.alpha, beta=arm.beta)
         for seed in seeds:
+            sys.stderr.write(".")
             context, query = self.question(seed, arm.schema)
             try:
                 wanted: Generation | None = self.inside.generate(context, query, decoder)
@@ -131,7 +148,7 @@ class Bench:
         """Seconds, passes and tokens of one plain request of the same question."""
         prompt = server.prompt(parts(context, query))
         before = self._fresh()
-        tokens, _ = self.served.written(prompt, TOKENS, query.answer_schema)
+        tokens, _ = self.served.written(prompt, self.limit, query.answer_schema)
         return self.served.seconds - before[0], self.served.passes - before[1], max(1, len(tokens))
 
     def _fresh(self) -> tuple[float, int]:
@@ -143,8 +160,8 @@ class Bench:
         report = make_report(FIRST_MADE + seed, True, 0.6, {"text": 1.0})
         context = Context(narrative=report.narrative)
         if not self.mini:
-            query = Query(task="Describe the roads.", answer_schema=SCHEMA if schema else None)
-            return context.model_copy(update={"narrative": report.narrative[:200]}), query
+            query = Query(task="Describe the roads.", answer_schema=_SCHEMA if schema else None)
+            return context.model_copy(update={"narrative": report.narrative[:80]}), query
         query = asked_of_mini(context)
         return context, query if schema else query.model_copy(update={"answer_schema": None})
 
@@ -212,10 +229,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     for name in told.model:
         with tempfile.TemporaryDirectory() as made:
             mini = settings.ROOT / "plugins/backbone/mini/weights"
-            bench = Bench(mini if name == "mini" else random_model(Path(made)), told.protocol, name == "mini")
-            each = -(-told.answers // len(ARMS))
+            bench = Bench(name, mini if name == "mini" else random_model(Path(made)), told.protocol)
+            arms, each = ARMS[name], -(-told.answers // len(ARMS[name]))
             with serving(bench.served, "served") as url:
-                rows = [(arm, bench.run(arm, range(i * each, (i + 1) * each), url)) for i, arm in enumerate(ARMS)]
+                rows = [(arm, bench.run(arm, range(i * each, (i + 1) * each), url)) for i, arm in enumerate(arms)]
         sys.stdout.write("\n".join(table(name, told.protocol, rows)) + "\n")
         sys.stdout.flush()
         kept[name] = {arm.name: vars(found) for arm, found in rows}
