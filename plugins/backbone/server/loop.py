@@ -100,13 +100,13 @@ class ServerLoop:
 
 def start(http: ServerHttp, protocol: str, model: str, tokenizer: str, tops: Tops, draft_tokens: int) -> RunningModel:
     """Asks the server what it has and makes ready to answer. Raises ConfigError, MissingTool or ServerSilent."""
+    speaker = _speaker(http, protocol, model)
+    offer = speaker.offer()
     place = str(hf_gguf.unpacked(tokenizer)) if hf_gguf.is_gguf(tokenizer) else tokenizer
-    spells, template = load_tokenizer(place)
+    spells, template = load_tokenizer(place, "backbone.tokenizer")
     eos = frozenset(end_tokens(_generation_config(place), spells))
     size = max(len(spells), _config_vocabulary(place))
     maker = GrammarCompiler(spells, size, sorted(eos))
-    speaker = _speaker(http, protocol, model)
-    offer = speaker.offer()
     alike = check_tokenizer(speaker, spells, tokenizer, http.base_url)
     most = tops.most if offer.most is None else min(offer.most, tops.most or offer.most)
     verifier = Verifier(speaker, max(size, maker.tokens.vocab_size), tops.first, most, draft_tokens)
