@@ -12,11 +12,10 @@ with an empty cache of prompts before every answer.
 from __future__ import annotations
 
 import argparse
-import json
 import statistics
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -39,8 +38,9 @@ from sgcad_core.config import load
 from sgcad_core.errors import InvalidOutput
 
 ALPHAS = (0.3, 0.7, 1.5)
-TOKENS = {"mini": 128, "random": 32}
-_VOCABULARY = 600
+TOKENS = {("mini", True): 128, ("mini", False): 128, ("random", True): 96, ("random", False): 16}
+"""The limit of an answer by model, with and without a schema."""
+_VOCABULARY = 320
 _SCHEMA = {
     "type": "object",
     "properties": {
@@ -99,25 +99,27 @@ class Bench:
 
     def __init__(self, name: str, folder: Path, protocol: str) -> None:
         self.served = ServedModel(folder, window=8192)
-        self.mini, self.limit = name == "mini", TOKENS[name]
-        self.inside = HfVision(model=str(folder), device="cpu", dtype="float32", max_new_tokens=self.limit)
+        self.name, self.mini = name, name == "mini"
+        self.inside = HfVision(model=str(folder), device="cpu", dtype="float32")
         self.fields = {
 
-            "model": "served", "tokenizer": str(folder), "protocol": protocol, "max_new_tokens": self.limit
+            "model": "served", "tokenizer": str(folder), "protocol": protocol
         }  # fmt: skip
 
     def run(self, arm: Arm, seeds: Sequence[int], url: str) -> Found:
         """Both ways over the reports of some seeds."""
         sys.stderr.write(f"{arm.name}\n")
         self.served.most = arm.most
-        server = OpenAIServer.model_validate({**self.fields, "base_url": url})
+        limit = TOKENS[self.name, arm.schema]
+        inside = self.inside.model_copy(update={"max_new_tokens": limit})
+        server = OpenAIServer.model_validate({**self.fields, "base_url": url, "max_new_tokens": limit})
         server.load()
         found, decoder = Found(), Cad(alpha=arm.alpha, beta=arm.beta)
         for seed in seeds:
             sys.stderr.write(".")
             context, query = self.question(seed, arm.schema)
             try:
-                wanted: Generation | None = self.inside.generate(context, query, decoder)
+                wanted: Generation | None = inside.generate(context, query, decoder)
             except InvalidOutput:
                 wanted = None
             self._one(found, server, context, query, decoder, wanted)
@@ -131,7 +133,9 @@ class Bench:
         try:
             got = server.generate(context, query, decoder)
         except InvalidOutput:
-            found.equal.append(wanted is None)  # an answer that does not fit has no tokens to compare or to count
+            found.equal += (
+                [] if wanted is None else [False]
+            )  # what fits neither here nor there has no tokens to compare
             return
         took, ran = self.served.seconds - before[0], self.served.passes - before[1]
         count = max(1, len(got.tokens))
@@ -148,7 +152,7 @@ class Bench:
         """Seconds, passes and tokens of one plain request of the same question."""
         prompt = server.prompt(parts(context, query))
         before = self._fresh()
-        tokens, _ = self.served.written(prompt, self.limit, query.answer_schema)
+        tokens, _ = self.served.written(prompt, server.max_new_tokens, query.answer_schema)
         return self.served.seconds - before[0], self.served.passes - before[1], max(1, len(tokens))
 
     def _fresh(self) -> tuple[float, int]:
@@ -160,8 +164,8 @@ class Bench:
         report = make_report(FIRST_MADE + seed, True, 0.6, {"text": 1.0})
         context = Context(narrative=report.narrative)
         if not self.mini:
-            query = Query(task="Describe the roads.", answer_schema=_SCHEMA if schema else None)
-            return context.model_copy(update={"narrative": report.narrative[:80]}), query
+            query = Query(task="Tell.", answer_schema=_SCHEMA if schema else None)
+            return context.model_copy(update={"narrative": report.narrative[:60]}), query
         query = asked_of_mini(context)
         return context, query if schema else query.model_copy(update={"answer_schema": None})
 
@@ -201,18 +205,19 @@ def random_model(folder: Path) -> Path:
     return folder
 
 
-def table(name: str, protocol: str, rows: Sequence[tuple[Arm, Found]]) -> Iterator[str]:
-    """One model's table."""
+def table(name: str, protocol: str, rows: Iterable[tuple[Arm, Found]]) -> Iterator[str]:
+    """One model's table, row by row as they are found."""
+    equal: list[bool] = []
     yield f"\n{name} through the protocol of {protocol}\n"
     yield "| arm | answers | equal | tokens | rounds | requests a token | undecided | time / greedy | passes / greedy |"
     yield "|---|---|---|---|---|---|---|---|---|"
     for arm, found in rows:
+        equal += found.equal
         lists = (found.tokens, found.rounds, found.requests)
-        middle = [f"{statistics.median(numbers):.3g}" for numbers in lists]
-        ratios = [f"{statistics.median(numbers):.2f}" for numbers in (found.seconds, found.passes)]
+        middle = [f"{statistics.median(numbers or [0]):.3g}" for numbers in lists]
+        ratios = [f"{statistics.median(numbers or [0]):.2f}" for numbers in (found.seconds, found.passes)]
         cells = [arm.name, str(len(found.equal)), str(sum(found.equal)), *middle, str(sum(found.open)), *ratios]
         yield f"| {' | '.join(cells)} |"
-    equal = [one for _, found in rows for one in found.equal]
     yield f"\n{sum(equal)} of {len(equal)} answers have the tokens of the answer in process; columns hold medians."
 
 
@@ -222,22 +227,23 @@ def main(arguments: Sequence[str] | None = None) -> None:
     known.add_argument("--model", nargs="+", choices=("mini", "random"), default=["mini", "random"])
     known.add_argument("--answers", type=int, default=210, help="of all arms together")
     known.add_argument("--protocol", choices=("vllm", "sglang", "llama_cpp"), default="vllm")
-    known.add_argument("--out", type=Path, help="the same as JSON")
+    known.add_argument("--arms", nargs="+", type=int, help="which of the arms, from 0; all if not given")
     told = known.parse_args(arguments)
     torch.set_num_threads(1)
-    kept: dict[str, Any] = {}
     for name in told.model:
         with tempfile.TemporaryDirectory() as made:
             mini = settings.ROOT / "plugins/backbone/mini/weights"
             bench = Bench(name, mini if name == "mini" else random_model(Path(made)), told.protocol)
-            arms, each = ARMS[name], -(-told.answers // len(ARMS[name]))
+            arms, each = list(enumerate(ARMS[name])), -(-told.answers // len(ARMS[name]))
             with serving(bench.served, "served") as url:
-                rows = [(arm, bench.run(arm, range(i * each, (i + 1) * each), url)) for i, arm in enumerate(arms)]
-        sys.stdout.write("\n".join(table(name, told.protocol, rows)) + "\n")
-        sys.stdout.flush()
-        kept[name] = {arm.name: vars(found) for arm, found in rows}
-    if told.out:
-        told.out.write_text(json.dumps(kept), encoding="utf-8")
+                rows = (
+                    (arm, bench.run(arm, range(i * each, (i + 1) * each), url))
+                    for i, arm in arms
+                    if told.arms is None or i in told.arms
+                )
+                for line in table(name, told.protocol, rows):
+                    sys.stdout.write(f"{line}\n")
+                    sys.stdout.flush()
 
 
 if __name__ == "__main__":
