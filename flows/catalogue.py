@@ -14,7 +14,7 @@ from flows.batch.tracking import machine
 from flows.terminal import escape
 from sgcad_core.config import SINGLE, Config
 from sgcad_core.entry_points import KINDS, catalogue
-from sgcad_core.errors import ConfigError
+from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.interfaces import Plugin
 from sgcad_core.registry import plugin_class
 
@@ -79,8 +79,19 @@ def describe_config(config: Config) -> None:
     for entry, plugin in zip(config.raw.get("validators") or (), config.validators, strict=True):
         table.add_row(f"validator ({plugin.stage})", *_row(entry, plugin))
     console.print(table)
-    if line := memory_warning(config):
-        console.print(escape(line), soft_wrap=True)
+    for line in (*served(config), memory_warning(config)):
+        if line:
+            console.print(escape(line), soft_wrap=True)
+
+
+def served(config: Config) -> tuple[str, ...]:
+    """What the server behind the backbone offers, asked now. Raises ConfigError if it lacks what the decoder needs."""
+    if config.backbone is None or config.decoder is None:
+        return ()
+    try:
+        return config.backbone.offers(config.decoder)
+    except MissingTool as fault:  # a config is right before its server runs
+        return (f"backbone: {fault}",)
 
 
 # ------------------------------------------------------------------ memory

@@ -237,7 +237,7 @@ def _pairing(fields: dict[str, Any], raw: dict[str, Any]) -> list[str]:
     if backbone and decoder and decoder.needs_prior and not backbone.gives_logits:
         faults.append(
             f"decoder {_name(raw['decoder'])!r} needs logits; backbone {_name(raw['backbone'])!r} gives none; "
-            "use decoder 'greedy', or a backbone that gives logits, such as 'hf_vision'"
+            "use decoder 'greedy', or a backbone that gives them, such as 'hf_vision', or 'openai_server' behind vLLM"
         )
     return faults
 

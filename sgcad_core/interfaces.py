@@ -127,6 +127,13 @@ class Backbone(Plugin):
         What it raises the first question raises again.
         """
 
+    def offers(self, decoder: Decoder) -> tuple[str, ...]:
+        """What the service behind it offers that decoder, a line each; most have none behind them.
+
+        Raises ConfigError (it lacks what is needed) or ServerSilent.
+        """
+        return ()
+
     def weights_gb(self) -> float | None:
         """Memory that its weights will take on this machine, decimal GB; None: none here, or unknown."""
         return None

@@ -72,6 +72,13 @@ def load(
     return Loaded(model, tokenizer, _template(tokenizer, place, revision), prepare, _evidence_heads(place, model))
 
 
+def load_tokenizer(name: str, field: str) -> tuple[Any, str | None]:
+    """A model's tokenizer and chat template without its weights. Raises ConfigError naming the config's field."""
+    place = _place(name)
+    tokenizer = _tokenizer(place, None, field)
+    return tokenizer, _template(tokenizer, place, None)
+
+
 def _with_dtype(options: Mapping[str, Any], device: str) -> dict[str, Any]:
     """The options with a dtype of torch in place of "native"."""
     if options.get("dtype") != "native":
@@ -95,14 +102,14 @@ def _device(name: str) -> torch.device:
         raise ConfigError(f"backbone.device {name!r} is unknown to torch: {fault}; use auto, cpu or cuda:0") from fault
 
 
-def _tokenizer(place: str, revision: str | None) -> Any:
+def _tokenizer(place: str, revision: str | None, field: str = "backbone.model") -> Any:
     try:
         found = tf.AutoTokenizer.from_pretrained(place, revision=revision)
     except (OSError, ValueError, ImportError) as fault:
-        raise _not_loaded(place, fault) from fault
+        raise _not_loaded(place, fault, field) from fault
     if not getattr(found, "is_fast", False):
         raise ConfigError(
-            f"backbone.model {place}: its tokenizer {type(found).__name__} is no fast tokenizer, which the grammar "
+            f"{field} {place}: its tokenizer {type(found).__name__} is no fast tokenizer, which the grammar "
             "needs; use a model that has tokenizer.json"
         )
     return found
@@ -159,10 +166,10 @@ def _need(package: str, field: str) -> None:
         raise MissingTool(f"{field} needs the package {package!r}: pip install 'sg-cadvlm[gpu]', or leave {field} out")
 
 
-def _not_loaded(place: str, fault: Exception) -> ConfigError:
+def _not_loaded(place: str, fault: Exception, field: str = "backbone.model") -> ConfigError:
     said = " ".join(str(fault).split())[:400]
     return ConfigError(
-        f"backbone.model {place} cannot be loaded: {said}; give a folder with config.json, weights and tokenizer, "
+        f"{field} {place} cannot be loaded: {said}; give a folder with config.json, weights and tokenizer, "
         "or an id that `hf download` has fetched"
     )
 

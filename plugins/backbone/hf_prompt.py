@@ -12,12 +12,11 @@ import threading
 from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Protocol
 
 import torch
 from PIL import Image
 
-from plugins.backbone.engine.families import Family
 from plugins.backbone.engine.records import Picture, Prompt
 from plugins.backbone.hf_load import Loaded
 from plugins.backbone.prompt import Parts
@@ -31,10 +30,19 @@ Turn = tuple[str, list[str | None]]
 """The role, and the texts and pictures (None) in their order."""
 
 
+class Pictured(Protocol):
+    """What prompts need of a model's family."""
+
+    image_token: int | None
+
+    def tokens_of(self, picture: Picture) -> int:
+        """How many placeholder tokens the picture takes."""
+
+
 class Prompter:
     """Writes prompts for one loaded model."""
 
-    def __init__(self, loaded: Loaded, family: Family, pictures_first: bool = True) -> None:
+    def __init__(self, loaded: Loaded, family: Pictured, pictures_first: bool = True) -> None:
         self.loaded = loaded
         self.family = family
         self.pictures_first = pictures_first
@@ -51,14 +59,13 @@ class Prompter:
     def notes(self) -> tuple[str, ...]:
         """Notes for the result: what the model's prompts leave out."""
         found = [] if self.loaded.template else ["the model has no chat template: its prompt is plain text"]
-        found += [] if self.loaded.prepare else ["the model sees no pictures: diagrams are left out"]
+        found += [] if self.loaded.prepare else ["the model is shown no pictures: diagrams are left out"]
         return tuple(found)
 
     def prompt(self, parts: Parts, view: int = 0) -> Prompt:
         """Token ids and pictures in one of their views. Raises ConfigError if the template drops a picture."""
         pictures = [self.picture(diagram, view) for diagram in parts.diagrams] if self.loaded.prepare else []
-        text = self._templated(parts, len(pictures)) if self.loaded.template else self._plain(parts, len(pictures))
-        ids = self._ids(text)
+        ids = self.spelled(parts, len(pictures))
         shown = ids.count(self.family.image_token) if self.family.image_token is not None else 0
         if shown != len(pictures):
             raise ConfigError(
@@ -68,6 +75,10 @@ class Prompter:
         return Prompt(self._expanded(ids, pictures), pictures)
 
     # ------------------------------------------------------------------ text
+    def spelled(self, parts: Parts, pictures: int) -> list[int]:
+        """Token ids with one placeholder for each picture."""
+        return self._ids(self._templated(parts, pictures) if self.loaded.template else self._plain(parts, pictures))
+
     def _blocks(self, parts: Parts, pictures: int) -> list[str | None]:
         """Texts and, as None, pictures in the prompt's order; a gap behind every text but the last."""
         shared = [parts.task, *map(self._defused, parts.passages)]

@@ -27,8 +27,7 @@ from sgcad_core.settings import cache_home
 
 if TYPE_CHECKING:
     from plugins.backbone.engine.grammar import Grammar, GrammarCompiler
-    from plugins.backbone.engine.loop import Engine
-    from plugins.backbone.engine.records import Answer, Policy, Prompt
+    from plugins.backbone.engine.records import Answer, Loop, Policy, Prompt
     from plugins.backbone.hf_prompt import Prompter
 
 
@@ -51,7 +50,7 @@ class Call:
 class RunningModel:
     """One model with its token loop, its prompt writer and its grammar compiler."""
 
-    engine: Engine
+    engine: Loop
     prompter: Prompter
     maker: GrammarCompiler
     eos: frozenset[int]
@@ -94,8 +93,8 @@ class RunningModel:
             raise ConfigError(f"{self.name}: {fault}; use quantization, device_map or a smaller model") from fault
         except faults.EngineFault as fault:
             raise ConfigError(f"{self.name}: {fault}") from fault
-        computed = f"computed in {str(self.engine.model.dtype).removeprefix('torch.')}"
-        return self._generation(found, [*self.prompter.notes, *note, computed]), tuple(found.ids)
+        computed = f"computed in {self.engine.computed_in}"
+        return self._generation(found, [*self.prompter.notes, *note, computed, *found.notes]), tuple(found.ids)
 
     def _grammar(self, schema: Mapping[str, Any] | None) -> Grammar | None:
         from plugins.backbone.engine.grammar import collisions
@@ -252,20 +251,21 @@ def start_model(
         apart = kept_batching(loaded.model, family, picture, cache_home())
     except EngineFault as fault:
         raise ConfigError(f"backbone.model {name}: {fault}") from fault
-    eos = _end_tokens(loaded.model, loaded.tokenizer)
+    eos = end_tokens(loaded.model.generation_config, loaded.tokenizer)
     vocabulary = int(loaded.model.get_output_embeddings().weight.shape[0])
     maker = GrammarCompiler(loaded.tokenizer, vocabulary, sorted(eos))
     engine = Engine(loaded.model, family, apart, reports_at_once, prefix_bytes, watched=bool(loaded.evidence_heads))
     return RunningModel(engine, prompter, maker, frozenset(eos), name, loaded.evidence_heads)
 
 
-def _end_tokens(model: Any, tokenizer: Any) -> set[int]:
+def end_tokens(generation_config: Any, tokenizer: Any) -> set[int]:
+    """Tokens that end an answer. Raises ConfigError if there are none."""
     found = {tokenizer.eos_token_id}
-    told = getattr(model.generation_config, "eos_token_id", None)
+    told = getattr(generation_config, "eos_token_id", None)
     found |= set(told) if isinstance(told, list) else {told}
     kept = {int(token) for token in found if token is not None}
     if not kept:
         raise ConfigError(
-            f"{type(model).__name__}: neither tokenizer nor generation_config names an end token; set eos_token"
+            f"{type(tokenizer).__name__}: neither tokenizer nor generation_config names an end token; set eos_token"
         )
     return kept

@@ -63,6 +63,7 @@ class Grammar:
         from llguidance import LLMatcher
 
         self.maker = maker
+        self.schema = schema
         try:
             text = LLMatcher.grammar_from_json_schema(dict(schema), overrides=_OPTIONS)
         except ValueError as fault:

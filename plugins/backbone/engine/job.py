@@ -119,7 +119,7 @@ class Job:
         if self.closing:
             return self.pending[:-1]
         room = self.request.max_new_tokens - len(self.answer.ids) - 1
-        self.guesses = self.draft.guess(min(guess_limit, room)) if self.request.draft else []
+        self.guesses = self.draft.guess(min(guess_limit, room))
         return [*self.pending, *self.guesses]
 
     def masks(self, words: int) -> Mask | None:

@@ -18,7 +18,7 @@ from typing import Any
 import torch
 
 from plugins.backbone.engine.families import Family, window_of
-from plugins.backbone.engine.faults import BadLogits, EngineFault, TooBig, TooLong, tried
+from plugins.backbone.engine.faults import BadLogits, EngineFault, TooBig, tried
 from plugins.backbone.engine.job import Job
 from plugins.backbone.engine.records import Answer, Request
 from plugins.backbone.engine.runner import Runner
@@ -56,6 +56,11 @@ class Engine:
         self.reason = ""
         self.halved = 0
 
+    @property
+    def computed_in(self) -> str:
+        """Number type of the model's weights."""
+        return str(self.model.dtype).removeprefix("torch.")
+
     def generate(self, request: Request) -> Answer:
         """Answers one request; blocks. Raises an EngineFault, or the exception of the decoder or the model."""
         future = self.submit(request)
@@ -70,12 +75,7 @@ class Engine:
 
         Cancelling the future ends the report before its next token.
         """
-        longest = max(len(p.ids) for p in request.prompts)
-        if longest + request.max_new_tokens > self.window:
-            raise TooLong(
-                f"the prompt has {longest} tokens and the answer may have {request.max_new_tokens}, together "
-                f"{longest + request.max_new_tokens}; the model's window is {self.window}"
-            )
+        request.hold_to(self.window)
         job = Job(request)
         with self.lock:
             if self.ended:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
+from plugins.backbone.engine.faults import TooLong
 from plugins.backbone.engine.grammar import Grammar
 
 
@@ -64,6 +65,15 @@ class Request:
         """A row each: with context, without it if that is run, then the views."""
         return [prompt for prompt in (self.with_context, self.without_context, *self.views) if prompt is not None]
 
+    def hold_to(self, window: int) -> None:
+        """Raises TooLong if the longest prompt and the longest answer exceed a window, in tokens."""
+        longest = max(len(prompt.ids) for prompt in self.prompts)
+        if longest + self.max_new_tokens > window:
+            raise TooLong(
+                f"the prompt has {longest} tokens and the answer may have {self.max_new_tokens}, together "
+                f"{longest + self.max_new_tokens}; the model's window is {window}"
+            )
+
 
 @dataclass
 class Answer:
@@ -87,5 +97,25 @@ class Answer:
     reused_tokens: int = 0
     """How many of them came from earlier calls."""
     model_calls: int = 0
-    """Forward passes that this report took part in, its prefills included."""
+    """Forward passes that this report took part in, its prefills included; requests, where a server has the model."""
     seconds: float = 0.0
+    notes: list[str] = field(default_factory=list)
+    """What the result should say of this answer."""
+
+
+class Loop(Protocol):
+    """What answers requests: the token loop of a model in this process, or a server's model verified token by token."""
+
+    window: int
+    """Tokens of a prompt and its answer together."""
+    ended: bool
+
+    @property
+    def computed_in(self) -> str:
+        """Number type of the model's weights, or whose model it is."""
+
+    def generate(self, request: Request) -> Answer:
+        """Answers one request; blocks."""
+
+    def end(self) -> None:
+        """Frees what it holds."""

@@ -206,7 +206,7 @@ def language(vocabulary: int) -> Language:
     try:
         from plugins.backbone.engine.grammar import GrammarCompiler
 
-        tokenizer = _tokenizer(vocabulary)
+        tokenizer = tokenizer_of(vocabulary)
         maker = GrammarCompiler(tokenizer, vocabulary, [2])
     except ImportError:
         return Language(vocabulary, None, words(160, 5), words(160, 5))
@@ -214,7 +214,8 @@ def language(vocabulary: int) -> Language:
     return Language(vocabulary, maker, *spelled)
 
 
-def _tokenizer(vocabulary: int) -> Any:
+def tokenizer_of(vocabulary: int) -> Any:
+    """An ordinary byte-level BPE, filled up with unreached words to the vocabulary's size."""
     from tokenizers import Tokenizer, decoders, models, pre_tokenizers, trainers
 
     made = Tokenizer(models.BPE())

@@ -1,0 +1,121 @@
+"""A model as a server holds it: writes tokens, scores given ones, over the engine's rows and caches.
+
+What a request would cost is counted: passes over the weights and tokens fed. Knows no protocol and no HTTP.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from plugins.backbone.engine.families import family_of
+from plugins.backbone.engine.grammar import GrammarCompiler, GrammarState, allowed
+from plugins.backbone.engine.records import Prompt
+from plugins.backbone.engine.runner import Runner
+from plugins.backbone.hf_load import load
+from plugins.backbone.hf_run import end_tokens
+
+
+class ServedModel:
+    """One model on one thread at a time. `most` is the largest top k, None the whole vocabulary."""
+
+    def __init__(self, folder: Path, window: int = 4096, most: int | None = None, dtype: str = "float32") -> None:
+        options = {"dtype": getattr(torch, dtype), "attn_implementation": "sdpa"}
+        self.loaded = load(str(folder), None, options, "cpu", "none")
+        self.tokenizer = self.loaded.tokenizer
+        self.runner = Runner(self.loaded.model, family_of(self.loaded.model), apart=False)
+        self.vocabulary = int(self.loaded.model.get_output_embeddings().weight.shape[0])
+        self.eos = end_tokens(self.loaded.model.generation_config, self.tokenizer)
+        self.maker = GrammarCompiler(self.tokenizer, self.vocabulary, sorted(self.eos))
+        self.window = window
+        self.most = most
+        self.lock = threading.Lock()
+        self.seconds = 0.0
+        """Processor seconds of the thread that ran the model."""
+
+    @property
+    def limit(self) -> int:
+        """The largest top k."""
+        return self.vocabulary if self.most is None else self.most
+
+    @property
+    def passes(self) -> int:
+        """Passes over the weights so far."""
+        return self.runner.calls
+
+    def scored(self, ids: Sequence[int], count: int) -> Tensor:
+        """Log-probabilities at the last `count` places of a text, (count, vocabulary) in nats."""
+        with self.lock, torch.inference_mode():
+            started = time.thread_time()
+            row = self.runner.open(Prompt(list(ids[: len(ids) - count + 1])))
+            (logits,) = self.runner.step([(row, list(ids[len(ids) - count :]))])
+            self.runner.close(row)
+            self.seconds += time.thread_time() - started
+            return logits.float().log_softmax(-1)
+
+    def written(
+        self, ids: Sequence[int], limit: int, schema: Mapping[str, Any] | None = None, text: Sequence[int] = ()
+    ) -> tuple[list[int], list[Tensor]]:
+        """Greedy tokens behind a text, the end token included, with the log-probabilities at each one's place.
+
+        A schema, or tokens that alone may be written, masks the choice; forced tokens of a schema cost no pass of their
+        own and have no log-probabilities.
+        """
+        with self.lock, torch.inference_mode():
+            started = time.thread_time()
+            found = self._write(ids, limit, schema, text)
+            self.seconds += time.thread_time() - started
+            return found
+
+    def _write(
+        self, ids: Sequence[int], limit: int, schema: Mapping[str, Any] | None, text: Sequence[int]
+    ) -> tuple[list[int], list[Tensor]]:
+        track = self.maker.grammar(schema).track() if schema is not None else None
+        row = self.runner.open(Prompt(list(ids)))
+        found, rows = list[int](), list[Tensor]()
+        pending = [ids[-1]]
+        forced = track.forced() if track else []
+        found, pending = [*forced], [*pending, *forced]
+        while len(found) < limit and not (track and track.done):
+            (logits,) = self.runner.step([(row, pending)])
+            row.length += len(pending)
+            rows.append(logits[-1].float().log_softmax(-1))
+            token = int(self._masked(rows[-1], track, text, len(found)).argmax())
+            pending = [token]
+            found.append(token)
+            if token in self.eos or (track and not track.take(token)):
+                break
+            if track:
+                forced = track.forced()
+                found, pending = [*found, *forced], [*pending, *forced]
+        self.runner.keep(row, found)
+        self.runner.close(row)
+        return found[:limit], rows
+
+    def _masked(self, row: Tensor, track: GrammarState | None, text: Sequence[int], written: int) -> Tensor:
+        may = torch.ones(self.vocabulary, dtype=torch.bool)
+        if track is not None:
+            mask = np.zeros((1, (self.vocabulary + 31) // 32), np.int32)
+            track.fill(mask[0])
+            may = allowed(mask, self.vocabulary, row.device)[0]
+        elif text:
+            may = torch.zeros(self.vocabulary, dtype=torch.bool)
+            may[text[written] if written < len(text) else list(self.eos)] = True
+        return row.masked_fill(~may, float("-inf"))
+
+    def bytes(self, ids: Sequence[int]) -> bytes:
+        """Tokens as bytes; special tokens have none."""
+        plain = [token for token in ids if token not in self.eos]
+        return bytes(self.maker.tokens.decode_bytes(plain))
+
+    def tokens(self, text: str) -> list[int]:
+        """A text's tokens."""
+        found: list[int] = self.tokenizer(text, add_special_tokens=False)["input_ids"]
+        return found
