@@ -173,9 +173,7 @@ class Shots:
         self._write_speeds(pen, t_s)
         return picture
 
-    def _draw_actor(
-        self, pen: ImageDraw.ImageDraw, info: ActorInfo, track: Trajectory, color: str, t_s: float
-    ) -> None:
+    def _draw_actor(self, pen: ImageDraw.ImageDraw, info: ActorInfo, track: Trajectory, color: str, t_s: float) -> None:
         row = min(round(t_s / STEP_S), len(track.t_s) - 1)
         trail = [self._pixel(x, y) for x, y in track.points[: row + 1 : 4]]
         if len(trail) > 1:
