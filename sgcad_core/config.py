@@ -77,9 +77,9 @@ class Config(Record):
     """"whole": the model is asked for road and behavior; "learned": the reader that learned where the rules err; else
     configs/prompts/<second_opinion>.md, with which the model is asked for the crash's gist. Where one is surer than the
     rules they give way, field by field. Empty: the rules alone read the narrative."""
-    ego: str = Field("responder", pattern=r"^[\w-]*$")
-    """The vehicle of ego.xosc that a stack is to drive: a role (responder, initiator, bystander) or an actor's id.
-    Empty: no such file."""
+    ego: str = Field("responder", pattern=r"^[\w-]+$")
+    """The vehicle of ego.xosc that a stack is to drive: a role (responder, initiator, bystander) or an actor's id;
+    none: no such file."""
     report_reader: ReportReader
     retriever: Retriever
     backbone: Backbone | None = None

@@ -140,7 +140,7 @@ def _hand_to_a_stack(
     with run.clock("draw"):
         source = ego_files.source_of(result)
         (folder / "scenario.xosc").write_text(stamped(record.scenario.xosc, source), encoding="utf-8")
-        if script and run.config.ego:
+        if script and run.config.ego != ego_files.NO_EGO:
             ego_files.write_beside_case(folder, script, record, run.config, source)
 
 

@@ -18,6 +18,7 @@ from sgcad_core.result import CaseRecord
 
 ROLES = ("responder", "initiator", "bystander")
 """In the order in which an ego is sought."""
+NO_EGO = "none"
 CARLA: Version = "1.0"
 """The version that scenario_runner reads."""
 MOST_ASSUMED = 12

@@ -37,7 +37,7 @@ def _ego(case: FinishedCase, place: Path, wish: Wish) -> list[Path]:
 
 def _commonroad(case: FinishedCase, place: Path, wish: Wish) -> list[Path]:
     """A planning problem for the ego; the others go on as if it were not there."""
-    from sgcad_core.formats.commonroad.write import write_commonroad
+    from sgcad_core.formats.commonroad.write import Problem, write_commonroad
 
     ego, (staging, contact_s) = case.ego(wish.ego), _staged(case, wish)
     others = [motion_of(staging, name, contact_s, AFTER_S) for name in staging.lines if name not in staging.coupled]
@@ -45,7 +45,8 @@ def _commonroad(case: FinishedCase, place: Path, wish: Wish) -> list[Path]:
     place.mkdir(parents=True, exist_ok=True)
     file = place / f"{case.script.case}.xml"
     mine = motion_of(staging, ego, contact_s, AFTER_S)
-    write_commonroad(file, case.script.case, case.script.graph, infos, mine, others)
+    problem = Problem(case.script.case, case.script.graph, infos, mine, others, case.source.date[:10])
+    file.write_text(write_commonroad(problem), encoding="utf-8")
     return [file]
 
 

@@ -1,1 +1,1 @@
-"""CommonRoad XML: a planning problem of a crash, written by the format's own library (the extra `commonroad`)."""
+"""CommonRoad XML: a crash as a planning problem for the ego."""

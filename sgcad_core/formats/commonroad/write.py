@@ -1,162 +1,156 @@
 """A crash as a CommonRoad scenario: lanelets, obstacles with trajectories, and the ego as a planning problem.
 
-Written by `commonroad-io`, format 2020a. Lanelets follow the lanes of the network; signals and signs are left
-out, and crossings. Places are box centers, as everywhere in this project. Knows no file.
+Format 2020a. Lanelets follow the lanes of the network; signals and signs are left out, and crossings. Places are box
+centers. The format's own library is not used: it asks for a protobuf that our other libraries exclude. Its reader reads
+these files (`research/checks/commonroad_reader.py`). Knows no file.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from sgcad_core.case.records import ActorInfo, Trajectory
-from sgcad_core.errors import MissingTool
+from sgcad_core.case.records import ActorInfo, Floats, Trajectory
 from sgcad_core.formats.lane_pieces import Piece, pieces_of
+from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.roads.lane_graph import LaneGraph
 
 DT_S = 0.05
-GOAL_M = 10.0
-"""Length of the goal's box; it is as wide as a lane."""
-LANE_M = 3.5
-_SPEED = 0.02
-"""Slower actors stand all the way where they also do not move."""
+GOAL_M, LANE_M = 10.0, 3.5
+"""Length and width of the goal's box."""
+STILL_M = 0.02
+"""An actor that moves less than this all the way stands."""
+AUTHOR = "SG-CADVLM"
 _TYPES = {
-    "car": "CAR", "van": "CAR", "truck": "TRUCK", "semitrailer": "TRUCK", "trailer": "TRUCK", "bus": "BUS",
-    "motorbike": "MOTORCYCLE", "bicycle": "BICYCLE", "pedestrian": "PEDESTRIAN", "tram": "TRAIN", "train": "TRAIN",
+    "car": "car", "van": "car", "truck": "truck", "semitrailer": "truck", "trailer": "truck", "bus": "bus",
+    "motorbike": "motorcycle", "bicycle": "bicycle", "pedestrian": "pedestrian", "tram": "train", "train": "train",
 }  # fmt: skip
 """Obstacle types by the actor's category."""
-AUTHOR, SOURCE = "SG-CADVLM", "crash report"
 
 
-def write_commonroad(
-    file: Path,
-    case: str,
-    graph: LaneGraph,
-    infos: Mapping[str, ActorInfo],
-    ego: Trajectory,
-    others: Sequence[Trajectory],
-) -> None:
-    """Write the XML. `ego`: the motion of the report's driver, whose first and last state are the problem.
+@dataclass(frozen=True)
+class Problem:
+    """What a file is made of."""
 
-    Raises MissingTool without commonroad-io.
-    """
-    library = _library()
-    scenario = library["scenario"].Scenario(DT_S, _scenario_id(library, case))
-    numbers = _numbers(graph)
-    scenario.add_objects(_network(library, graph, numbers))
-    first = len(numbers) + 1
-    for k, move in enumerate(others):
-        scenario.add_objects(_obstacle(library, first + k, infos[move.actor], move))
-    problem = _problem(library, first + len(others), ego)
-    problems = library["problem"].PlanningProblemSet([problem])
-    writer = library["writer"].CommonRoadFileWriter(
-        scenario, problems, AUTHOR, AUTHOR, f"{SOURCE} {case}", {library["scenario"].Tag.CRITICAL}
-    )
-    overwrite = library["writer"].OverwriteExistingFile.ALWAYS
-    writer.write_to_file(str(file), overwrite)
+    case: str
+    graph: LaneGraph
+    infos: Mapping[str, ActorInfo]
+    ego: Trajectory
+    """The motion of the report's driver: its first state and where it ends are the problem."""
+    others: Sequence[Trajectory]
+    """On the same clock, 0.05 s a row."""
+    date: str
+    """As 2026-11-27."""
 
 
-def read_commonroad(file: Path) -> tuple[Any, Any]:
-    """Scenario and planning problems as the library's own reader gives them. Raises MissingTool."""
-    found: tuple[Any, Any] = _library()["reader"].CommonRoadFileReader(str(file)).open()
-    return found
+def write_commonroad(problem: Problem) -> str:
+    """The XML."""
+    pieces = pieces_of(problem.graph)
+    numbers = {name: k for k, name in enumerate(pieces, 1)}
+    free = len(numbers) + 1
+    obstacles = (_obstacle(free + k, problem.infos[m.actor], m) for k, m in enumerate(problem.others))
+    root = _node(
+        "commonRoad", _location(), _node("scenarioTags", _node("critical")),
+        *(_lanelet(piece, numbers) for piece in pieces.values()), *obstacles,
+        _planning(free + len(problem.others), problem.ego),
+        timeStepSize=f"{DT_S:g}", commonRoadVersion="2020a", author=AUTHOR, affiliation=AUTHOR,
+        source=f"crash report {problem.case}", benchmarkID=benchmark_id(problem.case), date=problem.date,
+    )  # fmt: skip
+    ET.indent(root)
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
 
 
-def _library() -> dict[str, Any]:
-    """The modules of commonroad-io that are used."""
-    try:
-        from commonroad.common import file_reader, file_writer, util
-        from commonroad.geometry import shape
-        from commonroad.planning import goal, planning_problem
-        from commonroad.prediction import prediction
-        from commonroad.scenario import lanelet, obstacle, scenario, state, trajectory
-    except ImportError as fault:
-        raise MissingTool(
-            f"CommonRoad: {fault.name or 'commonroad'} is not installed; pip install 'sg-cadvlm[commonroad]'"
-        ) from fault
-    return {
-        "reader": file_reader, "writer": file_writer, "util": util, "shape": shape, "goal": goal,
-        "problem": planning_problem, "prediction": prediction, "lanelet": lanelet, "obstacle": obstacle,
-        "scenario": scenario, "state": state, "trajectory": trajectory,
-    }  # fmt: skip
-
-
-def _scenario_id(library: Mapping[str, Any], case: str) -> Any:
-    """The format names scenarios by country, map and numbers: the case's letters are the map, its digits the number."""
+def benchmark_id(case: str) -> str:
+    """The format's name of a scenario: country, map, number, one configuration with trajectories."""
     letters = re.sub(r"[^A-Za-z]", "", case).capitalize() or "Crash"
-    digits = int(re.sub(r"\D", "", case)[-9:] or 1) or 1
-    return library["scenario"].ScenarioID(
-        country_id="USA", map_name=letters, map_id=digits, configuration_id=1, obstacle_behavior="T", prediction_id=1
+    number = int(re.sub(r"\D", "", case)[-9:] or 1) or 1
+    return f"USA_{letters}-{number}_1_T-1"
+
+
+def _node(tag: str, *inside: ET.Element, text: str = "", **told: str) -> ET.Element:
+    made = ET.Element(tag, told)
+    made.text = text or None
+    made.extend(inside)
+    return made
+
+
+def _number(tag: str, value: float) -> ET.Element:
+    return _node(tag, text=f"{value + 0.0:.6g}" if abs(value) < 1e-4 else f"{value:.6f}".rstrip("0").rstrip("."))
+
+
+def _exact(tag: str, value: float) -> ET.Element:
+    return _node(tag, _number("exact", value))
+
+
+def _point(x_m: float, y_m: float, tag: str = "point") -> ET.Element:
+    return _node(tag, _number("x", x_m), _number("y", y_m))
+
+
+def _location() -> ET.Element:
+    """Nowhere on earth."""
+    return _node(
+        "location", _node("geoNameId", text="-999"), _node("gpsLatitude", text="999"), _node("gpsLongitude", text="999")
     )
 
 
 # ------------------------------------------------------------------ map
-def _numbers(graph: LaneGraph) -> dict[str, int]:
-    return {name: k for k, name in enumerate(pieces_of(graph), 1)}
-
-
-def _network(library: Mapping[str, Any], graph: LaneGraph, numbers: Mapping[str, int]) -> Any:
-    pieces = pieces_of(graph)
-    lanelets = [_lanelet(library, piece, numbers) for piece in pieces.values()]
-    return library["lanelet"].LaneletNetwork.create_from_lanelet_list(lanelets)
-
-
-def _lanelet(library: Mapping[str, Any], piece: Piece, numbers: Mapping[str, int]) -> Any:
-    kinds = library["lanelet"].LaneletType
-    kind = kinds.INTERSECTION if piece.crosses else kinds.URBAN if piece.cars else kinds.SIDEWALK
-    beside = {"left": piece.left, "right": piece.right}
-    told = {f"adjacent_{side}": numbers[name] for side, name in beside.items() if name}
-    told |= {f"adjacent_{side}_same_direction": True for side, name in beside.items() if name}
-    return library["lanelet"].Lanelet(
-        piece.side(1), piece.line, piece.side(-1), numbers[piece.id],
-        predecessor=[numbers[name] for name in piece.before], successor=[numbers[name] for name in piece.after],
-        lanelet_type={kind}, **told,
+def _lanelet(piece: Piece, numbers: Mapping[str, int]) -> ET.Element:
+    kind = "intersection" if piece.crosses else "urban" if piece.cars else "sidewalk"
+    return _node(
+        "lanelet", _bound("leftBound", piece.side(1)), _bound("rightBound", piece.side(-1)),
+        *(_node("predecessor", ref=str(numbers[name])) for name in piece.before),
+        *(_node("successor", ref=str(numbers[name])) for name in piece.after),
+        *_beside(piece, numbers), _node("laneletType", text=kind), id=str(numbers[piece.id]),
     )  # fmt: skip
+
+
+def _beside(piece: Piece, numbers: Mapping[str, int]) -> Iterator[ET.Element]:
+    for tag, name in (("adjacentLeft", piece.left), ("adjacentRight", piece.right)):
+        if name:
+            yield _node(tag, ref=str(numbers[name]), drivingDir="same")
+
+
+def _bound(tag: str, line: Floats) -> ET.Element:
+    return _node(tag, *(_point(float(x), float(y)) for x, y in line))
 
 
 # ------------------------------------------------------------------ actors
-def _obstacle(library: Mapping[str, Any], number: int, info: ActorInfo, move: Trajectory) -> Any:
-    shape = library["shape"].Rectangle(info.length_m, info.width_m)
-    kinds, start = library["obstacle"].ObstacleType, _initial(library, move)
-    still = float(np.ptp(move.points, axis=0).max()) < _SPEED
-    if still:
-        kind = kinds.PARKED_VEHICLE if info.record.axles else kinds.ROAD_BOUNDARY
-        return library["obstacle"].StaticObstacle(number, kind, shape, start)
-    kind = getattr(kinds, _TYPES.get(info.record.category, "UNKNOWN"))
-    states = [_state(library, move, k) for k in range(1, len(move.t_s))]
-    way = library["trajectory"].Trajectory(1, states)
-    prediction = library["prediction"].TrajectoryPrediction(way, shape)
-    return library["obstacle"].DynamicObstacle(number, kind, shape, start, prediction)
+def _obstacle(number: int, info: ActorInfo, move: Trajectory) -> ET.Element:
+    shape = _node("shape", _node("rectangle", _number("length", info.length_m), _number("width", info.width_m)))
+    start = _node("initialState", *_state(move, 0))
+    if float(np.ptp(move.points, axis=0).max()) < STILL_M:
+        kind = "parkedVehicle" if info.record.axles else "roadBoundary"
+        return _node("staticObstacle", _node("type", text=kind), shape, start, id=str(number))
+    kind = _TYPES.get(info.record.category, "unknown")
+    way = _node("trajectory", *(_node("state", *_state(move, row)) for row in range(1, len(move.t_s))))
+    return _node("dynamicObstacle", _node("type", text=kind), shape, start, way, id=str(number))
 
 
-def _state(library: Mapping[str, Any], move: Trajectory, row: int) -> Any:
-    place = np.array([float(move.x_m[row]), float(move.y_m[row])])
-    return library["state"].CustomState(
-        time_step=row, position=place, orientation=_heading(library, move, row), velocity=float(move.speed_mps[row])
-    )
+def _state(move: Trajectory, row: int) -> list[ET.Element]:
+    return [
+        _node("position", _point(float(move.x_m[row]), float(move.y_m[row]))),
+        _exact("orientation", _heading(move, row)),
+        _node("time", _node("exact", text=str(row))),
+        _exact("velocity", float(move.speed_mps[row])),
+    ]
 
 
-def _initial(library: Mapping[str, Any], move: Trajectory) -> Any:
-    place = np.array([float(move.x_m[0]), float(move.y_m[0])])
-    return library["state"].InitialState(
-        time_step=0, position=place, orientation=_heading(library, move, 0), velocity=float(move.speed_mps[0]),
-        acceleration=0.0, yaw_rate=0.0, slip_angle=0.0,
-    )  # fmt: skip
+def _heading(move: Trajectory, row: int) -> float:
+    return float(wrap_angle(float(move.heading_rad[row])))
 
 
-def _heading(library: Mapping[str, Any], move: Trajectory, row: int) -> float:
-    return float(library["util"].make_valid_orientation(float(move.heading_rad[row])))
-
-
-def _problem(library: Mapping[str, Any], number: int, ego: Trajectory) -> Any:
-    """From the ego's start to where the report's driver would have been in the end."""
+def _planning(number: int, ego: Trajectory) -> ET.Element:
+    """From the ego's start to where the report's driver would have been in the end, in twice its time."""
     last = len(ego.t_s) - 1
-    center = np.array([float(ego.x_m[last]), float(ego.y_m[last])])
-    box = library["shape"].Rectangle(GOAL_M, LANE_M, center, _heading(library, ego, last))
-    time = library["util"].Interval(0, 2 * last)
-    goal = library["goal"].GoalRegion([library["state"].CustomState(time_step=time, position=box)])
-    return library["problem"].PlanningProblem(number, _initial(library, ego), goal)
+    start = [*_state(ego, 0), _exact("yawRate", 0.0), _exact("slipAngle", 0.0)]
+    box = _node(
+        "rectangle", _number("length", GOAL_M), _number("width", LANE_M), _number("orientation", _heading(ego, last)),
+        _point(float(ego.x_m[last]), float(ego.y_m[last]), "center"),
+    )  # fmt: skip
+    time = _node("time", _node("intervalStart", text="0"), _node("intervalEnd", text=str(2 * last)))
+    goal = _node("goalState", _node("position", box), time)
+    return _node("planningProblem", _node("initialState", *start), goal, id=str(number))

@@ -1,7 +1,5 @@
 """The ego's file: valid in every version, waits for its driver, and meets the crash where it is driven as told."""
 
-import xml.etree.ElementTree as ET
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -14,6 +12,7 @@ from sgcad_core.formats.openscenario.playing.player import play_scenario
 from sgcad_core.formats.openscenario.reading.elements import read_root
 from sgcad_core.formats.openscenario.writing.header import Source
 from sgcad_core.formats.openscenario.writing.versions import VERSIONS
+from sgcad_core.formats.xml import parse_xml
 from sgcad_core.handover.ego_file.cue import cue_of
 from sgcad_core.handover.ego_file.ego import ego_motion
 from sgcad_core.handover.ego_file.others import AFTER_S, motion_of
@@ -31,6 +30,10 @@ WET = BehaviorSpec.model_validate(
         "light": "day",
     }
 )
+
+
+def parsed(xml):
+    return parse_xml(xml, "made")
 
 
 def text(made, ego, **more):
@@ -55,8 +58,8 @@ def driven(made, ego, pace=1.0, late_s=0.0):
       domainAbsoluteRelative="absolute" scale="1" offset="0"/></TimeReference><TrajectoryFollowingMode
       followingMode="position"/></FollowTrajectoryAction></RoutingAction></PrivateAction></Action><StartTrigger>
       <ConditionGroup><Condition name="c" delay="0" conditionEdge="none"><ByValueCondition><SimulationTimeCondition
-      value="0" rule="greaterOrEqual"/></ByValueCondition></Condition></ConditionGroup></StartTrigger></Event></Maneuver>
-      </ManeuverGroup>"""
+      value="0" rule="greaterOrEqual"/></ByValueCondition></Condition></ConditionGroup></StartTrigger></Event>
+      </Maneuver></ManeuverGroup>"""
     whole = text(made, ego).replace("<ManeuverGroup name=", group + "<ManeuverGroup name=", 1)
     return {t.actor: t for t in play_scenario(read_root(whole), None).trajectories}
 
@@ -73,7 +76,7 @@ def test_file_is_valid_and_plays_in_every_version(version, ego):
 
 
 def test_ego_has_start_speed_and_a_controller_slot_and_no_maneuver():
-    root = ET.fromstring(text(crossing(), "V1"))
+    root = parsed(text(crossing(), "V1"))
     slot = root.find("Entities/ScenarioObject[@name='V1']/ObjectController/Controller/Properties")
     assert {p.get("name"): p.get("value") for p in slot}["isEgo"] == "true"
     declared = {p.get("name"): p.get("value") for p in root.find("ParameterDeclarations")}
@@ -130,7 +133,7 @@ def test_line_has_the_instant_of_the_contact_itself():
 
 
 def test_scenario_ends_with_contact_standstill_or_time():
-    root = ET.fromstring(text(crossing(), "V1"))
+    root = parsed(text(crossing(), "V1"))
     stop = root.find("Storyboard/StopTrigger")
     kinds = ["CollisionCondition", "StandStillCondition", "SimulationTimeCondition"]
     assert all(stop.iter(kind) and next(stop.iter(kind), None) is not None for kind in kinds)
@@ -144,7 +147,7 @@ def test_header_names_the_case_and_comments_what_is_assumed():
 
 
 def test_friction_is_a_parameter():
-    root = ET.fromstring(text(crossing(), "V1", behavior=WET))
+    root = parsed(text(crossing(), "V1", behavior=WET))
     assert root.find(".//RoadCondition").get("frictionScaleFactor") == "$Friction"
 
 

@@ -1,11 +1,10 @@
 """Headers: source, date, assumptions, whatever the texts hold."""
 
-import xml.etree.ElementTree as ET
-
 from hypothesis import given
 from hypothesis import strategies as st
 
 from sgcad_core.formats.openscenario.writing.header import Source, file_header, stamped, today
+from sgcad_core.formats.xml import parse_xml
 
 PLANNED = (
     '<?xml version="1.0" encoding="UTF-8"?>\n<OpenSCENARIO>\n  <FileHeader description="crash" author="SG-CADVLM" '
@@ -13,17 +12,19 @@ PLANNED = (
 )
 
 
+def parsed(xml):
+    return parse_xml(xml, "made")
+
+
 def test_stamp_sets_source_and_date():
-    header = ET.fromstring(stamped(PLANNED, Source("c-1", "V1 strikes V2", (), "2026-11-27T10:00:00"))).find(
-        "FileHeader"
-    )
+    header = parsed(stamped(PLANNED, Source("c-1", "V1 strikes V2", (), "2026-11-27T10:00:00"))).find("FileHeader")
     assert header.get("description") == "c-1: V1 strikes V2"
     assert header.get("date") == "2026-11-27T10:00:00"
 
 
 @given(case=st.text(max_size=60), about=st.text(max_size=60), line=st.text(max_size=300))
 def test_stamped_file_stays_xml_with_any_text(case, about, line):
-    told = ET.fromstring(stamped(PLANNED, Source(case, about, (line,))))
+    told = parsed(stamped(PLANNED, Source(case, about, (line,))))
     assert told.find("FileHeader").get("author") == "SG-CADVLM"
 
 
