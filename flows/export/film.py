@@ -128,13 +128,13 @@ class Shots:
         (x, y), half = self._frame
         inches = SIDE / 100
         figure = Figure(figsize=(inches, inches), dpi=100, facecolor=overview_png.GROUND)
-        canvas = FigureCanvasAgg(figure)
+        FigureCanvasAgg(figure)
         axes = figure.add_axes((0, 0, 1, 1))
         axes.set_axis_off()
         axes.set(xlim=(x - half, x + half), ylim=(y - half, y + half))
         overview_png.draw_network(axes, drawing_of(self.case.script.net_xml), inches * 72 / (2 * half))
         out = io.BytesIO()
-        canvas.print_png(out)
+        figure.savefig(out, format="png")
         whole = Image.new("RGB", (SIDE + PANEL, SIDE), PAPER)
         whole.paste(Image.open(out).convert("RGB"), (0, 0))
         self._write_report(ImageDraw.Draw(whole))
