@@ -88,5 +88,5 @@ def _value(value: object) -> str:
 
 
 def no_ego(case: str) -> ConfigError:
-    """The error of a case in which nobody drives."""
+    """The error of a case without a drivable actor."""
     return ConfigError(f"{case}: no actor that a driver can control; a stack needs a vehicle")

@@ -62,7 +62,7 @@ class FinishedCase:
             raise BadInput(f"{file}: cannot be read ({type(fault).__name__}); run the case again") from fault
 
     def ego(self, wanted: str) -> str:
-        """The actor that a role or an id means. Raises ConfigError where nobody drives, or for an unknown id."""
+        """The actor that a role or an id means. Raises ConfigError for an unknown id, or without one."""
         if (ego := ego_of(self.script, wanted)) is None:
             raise no_ego(self.script.case)
         return ego

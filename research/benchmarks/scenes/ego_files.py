@@ -24,6 +24,7 @@ import numpy as np
 from flows.drive.script_of_case import case_folders
 from flows.export.ego_files import ROLES, write_ego_files
 from flows.export.finished_case import FinishedCase
+from research.benchmarks.scenes import esmini_library
 from research.benchmarks.scenes.esmini_library import NOT_LOADED, STEP_S
 from sgcad_core.case.records import ObservedContact, Trajectory
 from sgcad_core.errors import SgcadError
@@ -142,10 +143,10 @@ def _poses(staging: Staging, how: Driving) -> Floats:
 # ------------------------------------------------------------------ the players
 def _esmini(folder: Path, ego: str, poses: Floats, how: Driving) -> dict[str, Trajectory] | None:
     np.save(folder / "poses.npy", poses)
-    module, library = "research.benchmarks.scenes.esmini_library", str(how.library)
+    library = str((how.library or Path()).resolve())
     files = [str(folder / name) for name in (FILE, "poses.npy", "out.npz")]
-    command = [sys.executable, "-m", module, library, files[0], ego, *files[1:]]
-    done = subprocess.run(command, capture_output=True, timeout=TIMEOUT_S, check=False)  # noqa: S603
+    command = [sys.executable, esmini_library.__file__, library, files[0], ego, *files[1:]]
+    done = subprocess.run(command, capture_output=True, cwd=folder, timeout=TIMEOUT_S, check=False)  # noqa: S603
     if done.returncode == NOT_LOADED:
         return None
     if done.returncode:

@@ -131,7 +131,7 @@ def _group(other: Other, ego: str, cue: Cue, roads: object, minor: int) -> ET.El
 
 
 def _nothing(ego: str, minor: int) -> ET.Element:
-    """The group of a story in which nobody else moves."""
+    """The group of a story in which the others stand."""
     actors = node("Actors", selectTriggeringEntities=False)
     return node("ManeuverGroup", actors, name=f"{ego}_alone", maximumExecutionCount=1)
 
