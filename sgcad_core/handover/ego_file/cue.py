@@ -57,7 +57,7 @@ def cue_of(staging: Staging, ahead_m: float) -> Cue:
 
 
 def _conflict(staging: Staging) -> tuple[str, float]:
-    """The actor that the ego meets, and when: the contact, else the closest approach of all; of one that is alone its end."""
+    """The actor that the ego meets, and when: contact, else closest approach; without others the end."""
     if staging.contact is not None:
         pair = (staging.contact.actor, staging.contact.other)
         return next(name for name in pair if name != staging.ego), staging.contact.t_s
