@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -41,8 +42,9 @@ class Cue:
     """Clearance of both bodies from which on they move in any case."""
 
 
+@lru_cache(maxsize=2)
 def cue_of(staging: Staging, ahead_m: float) -> Cue:
-    """The cue of a staging. `ahead_m`: from the ego's origin to the center of its box."""
+    """The cue of a staging; the last ones are remembered. `ahead_m`: from the ego's origin to the center of its box."""
     other, contact_s = _conflict(staging)
     way = staging.way
     row = min(round(contact_s / STEP_S), len(way.pose) - 1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
+from functools import lru_cache
 
 from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
@@ -33,8 +34,9 @@ def _rounded(value: object) -> object:
     return round(value, 6) if isinstance(value, float) else value
 
 
+@lru_cache(maxsize=64)
 def lane_place(pose: Pose, roads: XodrRoads | None) -> LanePlace | None:
-    """The place in a lane that a pose has, where one holds it to the millimetre."""
+    """The place in a lane that a pose has, where one holds it to the millimetre; the last ones are remembered."""
     if roads is None or (place := roads.nearest(pose)) is None or not roads.covers(pose):
         return None
     there = roads.lane_pose(*place)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -25,6 +26,8 @@ AFTER_S = 8.0
 """How long the lines go on behind the conflict."""
 _COARSE = 4
 """Of so many samples behind the conflict one is written."""
+INDENT = "  " * 15
+"""Of the vertices."""
 _STILL_M = 0.02
 """An actor that goes less than this from sample to sample all the way stands."""
 
@@ -68,22 +71,24 @@ class Other:
         """Stands in the action for the vertices, which are many and quicker written as text."""
         return f"@{self.info.id}@"
 
-    def vertices(self, indent: str) -> str:
+    @cached_property
+    def vertices(self) -> str:
         """The vertices of the line, one a line of text."""
         rows = list(self.rows)
         move = self.move
         table = np.column_stack((move.t_s[rows], move.x_m[rows], move.y_m[rows], wrap_angle(move.heading_rad[rows])))
         return "".join(
-            f'\n{indent}<Vertex time="{t:.6g}"><Position><WorldPosition x="{x:.6f}" y="{y:.6f}" z="0" h="{h:.8f}" />'
+            f'\n{INDENT}<Vertex time="{t:.6g}"><Position><WorldPosition x="{x:.6f}" y="{y:.6f}" z="0" h="{h:.8f}" />'
             "</Position></Vertex>"
             for t, x, y, h in (table + 0.0).tolist()
         )
 
 
-def others_of(staging: Staging, contact_s: float) -> list[Other]:
-    """All actors but the ego and what is coupled to it, in the script's order."""
+@lru_cache(maxsize=2)
+def others_of(staging: Staging, contact_s: float) -> tuple[Other, ...]:
+    """All actors but the ego and what is coupled to it, in the script's order; the last ones are remembered."""
     named = [a for a in staging.script.actors if a.id in staging.lines and a.id not in staging.coupled]
-    return [_other(actor, motion_of(staging, actor.id, contact_s, AFTER_S), contact_s) for actor in named]
+    return tuple(_other(actor, motion_of(staging, actor.id, contact_s, AFTER_S), contact_s) for actor in named)
 
 
 def _other(actor: ActorInfo, center: Trajectory, contact_s: float) -> Other:

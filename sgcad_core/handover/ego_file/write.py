@@ -21,7 +21,7 @@ from sgcad_core.formats.openscenario.writing.writer import WRITING
 from sgcad_core.handover.ego_file import ego as me
 from sgcad_core.handover.ego_file.cue import Cue, cue_of
 from sgcad_core.handover.ego_file.elements import node, of_entity, of_time, position, private, speed, trigger
-from sgcad_core.handover.ego_file.others import Other, others_of
+from sgcad_core.handover.ego_file.others import INDENT, Other, others_of
 from sgcad_core.handover.script import Staging
 from sgcad_core.records.specs import BehaviorSpec
 
@@ -30,8 +30,6 @@ END, STANDS, LATE, FRICTION = "EndTime", "StandstillTime", "StandstillFrom", "Fr
 PATIENCE_S = 30.0
 """The file ends so long behind the scripted conflict."""
 STANDS_S = 5.0
-_INDENT = "  " * 15
-"""Of the vertices."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +78,7 @@ def write_ego(staging: Staging, about: EgoFile) -> str:
     ET.indent(root)
     text = ET.tostring(root, encoding="unicode")
     for other in others:
-        text = text.replace(other.mark, other.vertices(_INDENT) + _INDENT[:-2].join(("\n", "")), 1)
+        text = text.replace(other.mark, f"{other.vertices}\n{INDENT[:-2]}", 1)
     said = comments(about.source, (*_said(staging, cue), *_left_out(staging)))
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{said}{text}\n'
 

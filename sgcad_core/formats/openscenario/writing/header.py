@@ -42,10 +42,11 @@ class Source:
 
 
 def today() -> str:
-    """Now, or what SOURCE_DATE_EPOCH says, as the header wants it: UTC, to the second."""
+    """Today, or what SOURCE_DATE_EPOCH says, as the header wants it: UTC. The day alone, so that what is undone or run
+    again on one day gives the same file."""
     given = settings.environment("SOURCE_DATE_EPOCH")
     fixed = datetime.datetime.fromtimestamp(int(given), datetime.UTC) if given.isdecimal() else None
-    return (fixed or datetime.datetime.now(datetime.UTC)).strftime("%Y-%m-%dT%H:%M:%S")
+    return (fixed or datetime.datetime.now(datetime.UTC)).strftime("%Y-%m-%dT00:00:00")
 
 
 def file_header(source: Source, minor: int) -> ET.Element:
