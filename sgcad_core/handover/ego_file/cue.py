@@ -21,6 +21,9 @@ MARGIN = 1.01
 once, whatever a player rounds."""
 NEARER = 0.7
 """Share of the clearance at the start at which the others start in any case."""
+LEAD_ROWS = 2
+"""Rows (0.1 s) for which the others wait in any case: before, players know the speed of the file and not the driver's.
+So they stand where the script has them then, and no driver at the scripted speed notices."""
 FAR_M = 3.0
 """Least clearance at the start from which coming nearer tells anything."""
 
@@ -36,6 +39,8 @@ class Cue:
     to_conflict_s: float | None
     """The ego's time to that place, straight and at its present speed, from which on they move; None: from the start
     on, since the ego stands (or backs) at first."""
+    lead_rows: int
+    """Rows of the script that the others leave out."""
     other: str
     """The actor that it meets, or empty."""
     clearance_m: float | None
@@ -48,14 +53,15 @@ def cue_of(staging: Staging, ahead_m: float) -> Cue:
     other, contact_s = _conflict(staging)
     way = staging.way
     row = min(round(contact_s / STEP_S), len(way.pose) - 1)
-    start, there = (_origin(way.pose[k], ahead_m) for k in (0, row))
+    there, lead = _origin(way.pose[row], ahead_m), min(LEAD_ROWS, max(row - 1, 0))
+    start, speed = _origin(way.pose[lead], ahead_m), float(way.speed_mps[lead])
     away = float(np.hypot(there.x_m - start.x_m, there.y_m - start.y_m))
-    first = float(way.speed_mps[0])
     ahead = (there.x_m - start.x_m) * np.cos(start.heading_rad) + (there.y_m - start.y_m) * np.sin(start.heading_rad)
-    timed = first >= MOVES_MPS and away >= LEAST_M and ahead > 0
-    gap = _clearance_m(staging, other) if timed and other else 0.0
+    if min(speed, float(way.speed_mps[0])) < MOVES_MPS or away < LEAST_M or ahead <= 0:
+        return Cue(there, contact_s, None, 0, other, None)
+    gap = _clearance_m(staging, other) if other else 0.0
     near = round(NEARER * gap, 1) if gap > FAR_M else None
-    return Cue(there, contact_s, round(MARGIN * away / first + STEP_S, 3) if timed else None, other, near)
+    return Cue(there, contact_s, round(MARGIN * away / speed + STEP_S, 3), lead, other, near)
 
 
 def _conflict(staging: Staging) -> tuple[str, float]:

@@ -85,10 +85,22 @@ class Other:
 
 
 @lru_cache(maxsize=2)
-def others_of(staging: Staging, contact_s: float) -> tuple[Other, ...]:
-    """All actors but the ego and what is coupled to it, in the script's order; the last ones are remembered."""
+def others_of(staging: Staging, contact_s: float, lead_rows: int) -> tuple[Other, ...]:
+    """All actors but the ego and what is coupled to it, in the script's order; the last ones are remembered.
+
+    `lead_rows`: of the script that they leave out at the beginning.
+    """
     named = [a for a in staging.script.actors if a.id in staging.lines and a.id not in staging.coupled]
-    return tuple(_other(actor, motion_of(staging, actor.id, contact_s, AFTER_S), contact_s) for actor in named)
+    rest_s = contact_s - lead_rows * STEP_S
+    moves = (_from_row(motion_of(staging, actor.id, contact_s, AFTER_S), lead_rows) for actor in named)
+    return tuple(_other(actor, move, rest_s) for actor, move in zip(named, moves, strict=True))
+
+
+def _from_row(move: Trajectory, row: int) -> Trajectory:
+    """A motion from a row on, on a clock that begins there; a shorter one stays where it ends."""
+    first = min(row, len(move.t_s) - 1)
+    told = {name: getattr(move, name)[first:] for name in ("x_m", "y_m", "heading_rad", "speed_mps")}
+    return move.model_copy(update=told | {"t_s": move.t_s[first:] - move.t_s[first]})
 
 
 def _other(actor: ActorInfo, center: Trajectory, contact_s: float) -> Other:

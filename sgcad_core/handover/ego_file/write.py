@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from scenariogeneration.xosc.enumerations import VersionBase
 
+from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.formats.openscenario.roads.road_network import roads_of
 from sgcad_core.formats.openscenario.writing.entities import center_ahead_m, environment
 from sgcad_core.formats.openscenario.writing.header import Source, comments, file_header
@@ -53,7 +54,7 @@ def write_ego(staging: Staging, about: EgoFile) -> str:
     minor = int(about.version[-1])
     roads = roads_of(about.xodr) if about.xodr else None
     cue = cue_of(staging, center_ahead_m(staging.script.info(staging.ego)))
-    others, move = others_of(staging, cue.contact_s), me.ego_motion(staging, cue.contact_s)
+    others, move = others_of(staging, cue.contact_s, cue.lead_rows), me.ego_motion(staging, cue.contact_s)
     with WRITING:
         VersionBase().setVersion(minor=minor)
         around = environment(about.behavior, minor)
@@ -143,7 +144,8 @@ def _cues(name: str, ego: str, cue: Cue, roads: object, minor: int) -> list[list
     how: dict[str, object] = {"alongRoute": False}
     if minor:
         how = {"coordinateSystem": "entity", "relativeDistanceType": "euclidianDistance"}
-    found = [[of_entity(f"{name}_in_time", ego, node("TimeToCollisionCondition", where, **told, **how))]]
+    known = of_time(f"{name}_driver_known", cue.lead_rows * STEP_S - (0 if minor else 1e-3), minor)
+    found = [[of_entity(f"{name}_in_time", ego, node("TimeToCollisionCondition", where, **told, **how)), known]]
     if cue.clearance_m is not None:
         kind = "euclidianDistance" if minor else "cartesianDistance"
         near = node(

@@ -121,7 +121,7 @@ def test_others_begin_at_once_where_the_ego_stands_at_first():
 def test_time_to_conflict_is_the_way_over_the_speed():
     made = crossing(own=10.0, contact_s=6.0)
     cue = cue_of(staging_for(made, "V1"), 0.0)
-    assert cue.to_conflict_s == pytest.approx(1.01 * 6.0 + 0.05, abs=0.06)
+    assert cue.to_conflict_s == pytest.approx(1.01 * (6.0 - 0.1) + 0.05, abs=0.06)
 
 
 def test_line_has_the_instant_of_the_contact_itself():
