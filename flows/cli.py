@@ -19,6 +19,7 @@ from flows.case.revise_command import revise
 from flows.command_end import at_end, guarded, heed_interrupts, interrupted, leave
 from flows.desk.command import desk_app
 from flows.drive.commands import drive, vary
+from flows.export.command import export, video
 from flows.index_commands import index_app
 from flows.plugin_commands import check, plugins_app
 from flows.results.report.commands import report, score, table
@@ -248,7 +249,7 @@ def doctor(
     raise typer.Exit(0 if examine(out, services) else 1)
 
 
-for command in (check, drive, vary, table, report, score, revise):
+for command in (check, drive, vary, export, video, table, report, score, revise):
     app.command()(command)
 
 

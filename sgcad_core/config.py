@@ -37,7 +37,7 @@ from sgcad_core.registry import plugin_class
 from sgcad_core.system.yaml_faults import YAML_FAULTS
 
 SINGLE = ("report_reader", "retriever", "backbone", "decoder", "road_writer", "scenario_writer", "simulator", "tracker")
-SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings", "second_opinion")
+SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings", "second_opinion", "ego")
 OPTIONAL = {"backbone", "decoder"}
 
 
@@ -77,6 +77,9 @@ class Config(Record):
     """"whole": the model is asked for road and behavior; "learned": the reader that learned where the rules err; else
     configs/prompts/<second_opinion>.md, with which the model is asked for the crash's gist. Where one is surer than the
     rules they give way, field by field. Empty: the rules alone read the narrative."""
+    ego: str = Field("responder", pattern=r"^[\w-]+$")
+    """The vehicle of ego.xosc that a stack is to drive: a role (responder, initiator, bystander) or an actor's id;
+    none: no such file."""
     report_reader: ReportReader
     retriever: Retriever
     backbone: Backbone | None = None

@@ -15,11 +15,14 @@ from flows.case_files import case_folder
 from flows.case_files.find_cases import Case
 from flows.case_files.step_keys import StepKeys
 from flows.drive import drive_stage
+from flows.export import ego_files
 from flows.player import overview_png, player_page
 from flows.player.player_data import View
 from sgcad_core.case.records import Attempt, RoadNetwork, Scenario, Trajectory
 from sgcad_core.config import Config
 from sgcad_core.errors import ConfigError
+from sgcad_core.formats.openscenario.writing.header import stamped
+from sgcad_core.handover.script import Script
 from sgcad_core.records.facts import Fact
 from sgcad_core.result import CaseRecord, facts_of, result_of, seconds_of
 
@@ -86,15 +89,17 @@ def _write(run: CaseRun, folder: case_folder.CaseFolder, digest: str) -> dict[st
 def write_files(run: CaseRun, folder: Path) -> dict[str, Any]:
     """Write the case's files into a folder, result.json last; returns the result."""
     record = run.record()
+    script = drive_stage.script_or_none(record)
     case_folder.write_artifacts(folder, run.report, with_reading(run.attempts(), record), record)
     if run.metrics is not None:
-        _hand_over(run, folder, record)
+        _hand_over(run, folder, record, script)
         case_folder.write_json(folder / "metrics.json", run.metrics)
     if run.trace:
         (folder / "error.txt").write_text(run.trace, encoding="utf-8", errors="replace")
     result = result_of(record) if run.result is None else run.result
-    result["impact"] = _impact(record)
+    result["impact"] = drive_stage.impact(script, record) if script else None
     _draw(run, folder, record, result)
+    _hand_to_a_stack(run, folder, record, script, result)
     result["seconds"] = seconds_of(record)  # with those of the drawing
     if run.keys:
         result["shared"] = run.shared
@@ -106,20 +111,12 @@ def write_files(run: CaseRun, folder: Path) -> dict[str, Any]:
     return result
 
 
-def _impact(record: CaseRecord) -> dict[str, Any] | None:
-    """Changes of velocity and rest poses of an executed case; None where nothing touches."""
-    if not (record.scenario and record.execution and record.network and record.network.net_xml):
-        return None
-    return drive_stage.impact(record)
-
-
-def _hand_over(run: CaseRun, folder: Path, record: CaseRecord) -> None:
+def _hand_over(run: CaseRun, folder: Path, record: CaseRecord, script: Script | None) -> None:
     """Add the figures of the contact and the config's drives (`drive`) to the metrics."""
-    drawn = record.network is not None and record.network.net_xml
-    if run.metrics is None or not (record.scenario and drawn and run.execution):
+    if run.metrics is None or script is None:
         return
     with run.clock("measure"):
-        run.metrics["exact"] |= drive_stage.contact(record)
+        run.metrics["exact"] |= drive_stage.contact(script, record)
     if run.config.drive:
         with run.clock("drive"):
             run.metrics["drive"] = drive_stage.driven(run.config.drive, record, folder)
@@ -132,6 +129,19 @@ def _draw(run: CaseRun, folder: Path, record: CaseRecord, result: dict[str, Any]
             view = View.of(record, run.report, run.metrics or {}, result, drives_in(folder))
             (folder / "player.html").write_text(player_page.page(view), encoding="utf-8")
             (folder / "picture.png").write_bytes(overview_png.png(view))
+
+
+def _hand_to_a_stack(
+    run: CaseRun, folder: Path, record: CaseRecord, script: Script | None, result: dict[str, Any]
+) -> None:
+    """Name source, date and assumptions in scenario.xosc, and write ego.xosc of an executed case."""
+    if record.scenario is None or record.scenario.xosc is None:
+        return
+    with run.clock("draw"):
+        source = ego_files.source_of(result)
+        (folder / "scenario.xosc").write_text(stamped(record.scenario.xosc, source), encoding="utf-8")
+        if script and run.config.ego != ego_files.NO_EGO:
+            ego_files.write_beside_case(folder, script, record, run.config, source)
 
 
 def drives_in(folder: Path) -> dict[str, Sequence[Trajectory]]:

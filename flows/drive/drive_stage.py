@@ -28,14 +28,20 @@ def driven(stage: DriveStage, record: CaseRecord, folder: Path) -> dict[str, Any
     return found
 
 
-def contact(record: CaseRecord) -> dict[str, Any]:
+def script_or_none(record: CaseRecord) -> Script | None:
+    """An executed case as a script with the roles that were read; None of a case that was not executed."""
+    executed = record.scenario and record.execution and record.network and record.network.net_xml
+    return script_in(record, {}) if executed else None
+
+
+def contact(script: Script, record: CaseRecord) -> dict[str, Any]:
     """Figures of the scripted contact: its severity, and the last moments to avoid it."""
-    return contact_figures(script_in(record, {}), record.execution.contact if record.execution else None)
+    return contact_figures(script, record.execution.contact if record.execution else None)
 
 
-def impact(record: CaseRecord) -> dict[str, Any] | None:
+def impact(script: Script, record: CaseRecord) -> dict[str, Any] | None:
     """Entry of result.json on the scripted contact; None without contact."""
-    return impact_summary(script_in(record, {}), record.execution.contact if record.execution else None)
+    return impact_summary(script, record.execution.contact if record.execution else None)
 
 
 def script_in(record: CaseRecord, role_of: Mapping[str, str]) -> Script:

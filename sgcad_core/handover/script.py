@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
@@ -109,8 +110,12 @@ class Staging:
         return self.contact.t_s if self.contact else float(self.script.trajectories[0].t_s[-1])
 
 
+@lru_cache(maxsize=4)
 def staging_for(script: Script, ego: str) -> Staging:
-    """The staging with an actor as the ego. Raises ConfigError for an actor that no driver can control."""
+    """The staging with an actor as the ego; the last few are remembered.
+
+    Raises ConfigError for an actor that no driver can control.
+    """
     info = script.info(ego)
     if not info.record.driven:
         known = ", ".join(a.id for a in script.actors if a.record.driven) or "none"

@@ -146,8 +146,9 @@ class _Document:
 
     def _connecting_road(self, root: Element, connector: Connector) -> None:
         length, link = connector.way.length_m, connector.connection
+        name = f"{connector.came.name} to {connector.goes.name}"
         road = add_child(
-            root, "road", name="", length=decimal_text(length), id=connector.id, junction=connector.junction
+            root, "road", name=name, length=decimal_text(length), id=connector.id, junction=connector.junction
         )
         road.set("rule", "RHT")
         links = add_child(road, "link")

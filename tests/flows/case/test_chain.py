@@ -17,6 +17,7 @@ from sgcad_core.errors import ConfigError, MissingTool
 ALWAYS = {"report.txt", "attempts", "result.json", "specs.json", "steps.json", ".digest", ".source"}
 EXECUTED = ALWAYS | {
     "road.net.xml", "road.xodr", "scenario.xosc", "trajectories.csv", "metrics.json", "player.html", "picture.png",
+    "ego.xosc", "ego_carla.xosc", "run_esmini.sh", "run_carla.py",
 }  # fmt: skip
 MODEL = {"road_writer": "testkit_asking", "decoder": "greedy"}
 

@@ -37,7 +37,7 @@ from sgcad_core.records.specs import BehaviorSpec
 
 END = "EndTime"
 """The file's parameter for people who cut a scenario short: when it stops, seconds."""
-_WRITING = threading.Lock()
+WRITING = threading.Lock()
 """scenariogeneration keeps its version in a class: one file at a time."""
 DATE = datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC)
 """Fixed, so that equal scenarios are equal files."""
@@ -68,7 +68,7 @@ def write_xosc(
     timed = [_Timed(held_at_standstill(m), ahead, size) for m, ahead, size in zip(moves, reaches, sizes, strict=True)]
     told = timed if handover is None else None
     parts = told or event_actors(moves, reaches, handover or EventOptions())
-    with _WRITING:
+    with WRITING:
         VersionBase().setVersion(minor=minor)
         scenario = xosc.Scenario(
             _NOT_XML.sub("?", name),

@@ -44,6 +44,16 @@ def test_the_cubic_begins_and_ends_in_its_poses(bearing, distance, turn):
     assert arc_lengths_of([geometry])[0] >= distance - 1e-6
 
 
+@pytest.mark.parametrize("name", NAMED)
+def test_roads_of_a_junction_are_named_by_the_roads_that_they_join(name):
+    root = etree.fromstring(compiled(name).xodr.encode())
+    names = {road.get("id"): road.get("name") for road in root.findall("road")}
+    for road in root.findall("road"):
+        if road.get("junction") != "-1":
+            came, goes = (road.find(f"link/{side}").get("elementId") for side in ("predecessor", "successor"))
+            assert road.get("name") == f"{names[came]} to {names[goes]}"
+
+
 # ------------------------------------------------------------------ findings
 def drop_stop_line_references(root):
     for signal in root.iterfind(".//signal"):

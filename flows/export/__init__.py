@@ -1,0 +1,1 @@
+"""Finished cases in the formats of other tools, and as films."""

@@ -1,0 +1,1 @@
+"""CommonRoad XML: a crash as a planning problem for the ego."""

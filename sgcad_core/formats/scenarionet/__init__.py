@@ -1,0 +1,1 @@
+"""ScenarioNet records, which MetaDrive and ScenarioNet read: one dictionary a scenario, pickled."""
