@@ -121,6 +121,30 @@ def test_motion_told_otherwise_lacks(made, field, so, otherwise):
     assert of(motion_items(telling(made, fact(field, otherwise))), field).kind == "lacks"
 
 
+def test_a_departure_is_compared_with_where_the_vehicle_left_the_road(tmp_path, made):
+    from flows.case.chain import CaseRun
+    from flows.case_files.find_cases import Case
+
+    text = "V1 was traveling north. V1 departed the road to the right. The front of V1 struck a tree."
+    (tmp_path / "report.txt").write_text(text)
+    run = CaseRun(load("template.yaml", ("tracker=none",)), Case(tmp_path, "tree"))
+    run.go()
+    record = run.record()
+    ran_off = ExecutedCase(record.reading, record.network, record.scenario, record.execution, record.drawn)
+    for value, kind in (
+        ("right", "has"),
+        ("E", "has"),
+        ("N", "has"),
+        ("either", "has"),
+        ("left", "lacks"),
+        ("W", "lacks"),
+    ):
+        told = telling(ran_off, fact("vehicles.V1.departs", value))
+        assert of(motion_items(told), "vehicles.V1.departs").kind == kind, value
+    stays = of(motion_items(telling(made, fact("vehicles.V1.departs", "either"))), "vehicles.V1.departs")
+    assert (stays.kind, stays.reason) == ("lacks", "it is on the road at its first contact")
+
+
 def test_motion_is_judged_as_executed_not_as_planned(made):
     """V2 mirrored in time drives backwards along its way."""
     tracks = [
