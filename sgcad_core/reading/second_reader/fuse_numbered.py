@@ -95,7 +95,7 @@ def _told(reading: Reading, changed: Changed, guess: Guess) -> Reading:
 # ------------------------------------------------------------------ vehicles
 def _maneuver(crash: CrashFacts, roads: RoadFacts, of: str, value: str) -> Changed | None:
     v = crash.vehicle(of)
-    if v is None:
+    if v is None or (value == "overtaking" and len(crash.vehicles) == 1):  # a lone vehicle passes nothing
         return None
     new = moved(v, cast("Maneuver", value))
     if value in TURNS and roads.junction.kind == "none":

@@ -46,6 +46,12 @@ def test_a_turn_that_is_taken_has_a_junction() -> None:
     assert len(layout_of_facts(fused(PLAIN, maneuver_V1="turn_left").roads).legs) > 2
 
 
+def test_a_lone_vehicle_passes_nothing() -> None:
+    alone = "V1 was traveling east on a road. The front of V1 struck a pole."
+    assert fused(alone, maneuver_V1="overtaking").crash.vehicles[0].maneuver == "straight"
+    assert fused(PLAIN, maneuver_V1="overtaking").crash.vehicles[0].maneuver == "overtaking"
+
+
 def test_lanes_show_in_the_layout_of_the_road() -> None:
     for answer, want in (("own3", "own3+both6"), ("both4", "own2+both4")):
         found = fused(PLAIN, lanes_V1=answer)
