@@ -40,6 +40,8 @@ _PLACES = 5
 _MOST, _MOST_AGAIN = 5, 10
 """Encounters tried: each costs about as much as the first. More where the two touch a second time, since a tail hits
 the other only for some places of the impact."""
+_WORSE = 1.5
+"""By which another place may be worse: less than a maneuver or a departure that does not show there."""
 _BETTER = 0.25
 """Gain that another encounter must bring."""
 
@@ -77,7 +79,7 @@ def _along(found: Encounter, factors: tuple[float, float]) -> Iterator[Encounter
     one, two = first.motion_with(second), second.motion_with(first)
     if one.drivable and two.drivable:
         for meeting in along_sides(one, two, found.meeting.sides, _PLACES):
-            if meeting.cost < OUT:
+            if meeting.cost < min(OUT, found.meeting.cost + _WORSE):
                 yield Encounter(first, second, meeting)
 
 

@@ -25,7 +25,8 @@ DEPARTURES: dict[Maneuver, int] = {"departing_road_left": 1, "departing_road_rig
 _STAYS: frozenset[Maneuver] = frozenset({"u_turn", "stopped", "parked", "backing"})
 """Maneuvers with a line of their own, or none, from which the road is not left."""
 _BEHIND_TURN_M = 12.0
-_LEAST_MEDIAN_M = 0.6
+_LEAST_MEDIAN_M, _BESIDE_M = 0.6, 1.0
+"""Width from which a median is one, and how far over the edge of its lanes a vehicle in a narrow one is."""
 _ALONG = math.sin(math.radians(20.0))
 _BEFORE_M, _BEND_RAD = 40.0, math.radians(4.0)
 """Length before the place over which a bend shows, and its least angle."""
@@ -68,7 +69,7 @@ def aside_m(course: Course, side: int) -> float:
     if side < 0:
         return -(course.right_edge_m + OFF_ROAD_M)
     if course.median_m > _LEAST_MEDIAN_M:
-        return course.own_left_m + min(course.median_m / 2, OFF_ROAD_M)
+        return course.own_left_m + min(max(course.median_m / 2, _BESIDE_M), OFF_ROAD_M)
     return course.left_edge_m + OFF_ROAD_M
 
 
