@@ -24,6 +24,7 @@ from flows.player.road_shapes import drawing_of
 from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.errors import MissingTool
 from sgcad_core.geometry.plane import Box, corners
+from sgcad_core.system.pictures import opened
 from sgcad_core.units import MPS_PER_MPH
 
 if TYPE_CHECKING:
@@ -136,7 +137,7 @@ class Shots:
         out = io.BytesIO()
         figure.savefig(out, format="png")
         whole = Image.new("RGB", (SIDE + PANEL, SIDE), PAPER)
-        whole.paste(Image.open(out).convert("RGB"), (0, 0))
+        whole.paste(opened(out.getvalue()).convert("RGB"), (0, 0))
         self._write_report(ImageDraw.Draw(whole))
         return whole
 

@@ -137,7 +137,7 @@ class Scripted(Backbone):
                 f"decoder {type(decoder).__name__} needs logits; the scripted backbone gives none: use decoder 'greedy'"
             )
         self._check_question(query)
-        text = self._answer(context, query)
+        text = self.answer(context, query)
         return Generation(text=text, finish="refused" if is_refusal(text) else "stop")
 
     def _check_question(self, query: Query) -> None:
@@ -150,7 +150,8 @@ class Scripted(Backbone):
                 "new prompt, mend what it asks otherwise, then `python -m research.benchmarks.scenes.recorded --keep`"
             )
 
-    def _answer(self, context: Context, query: Query) -> str:
+    def answer(self, context: Context, query: Query) -> str:
+        """The text of `generate`, whatever the question says."""
         for entry in self.entries:
             if entry.conditional and entry.meets(context, query):
                 return entry.text

@@ -1,4 +1,4 @@
-"""Whether a stated turn, lane change or evasion is visible before the first contact, by the rules of `sgcad score`.
+"""Whether a stated turn, lane change, evasion or speed shows before the first contact, by the rules of `sgcad score`.
 
 Knows one actor's course and its poses up to the contact; no other actor.
 """
@@ -13,14 +13,27 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.labels.course_label_match import brakes, steers
 from sgcad_core.metrics.labels.observed_crash import BEFORE_S
+from sgcad_core.planner.actor_plan import Role, usual_speed
 from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING
 from sgcad_core.planner.lines.actor_course import Course
-from sgcad_core.planner.motion import STEP_S
+from sgcad_core.planner.motion import STEP_S, Motion
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Actor
 
 TURNED_RAD, MOVED_M = math.radians(12.0), 0.7
 """A smaller change of heading is no visible turn, a smaller shift no visible lane change."""
+
+
+SPEED_SHOWS_S = 0.3
+"""Time for which a stated speed is driven before the contact at least."""
+
+
+def seen_s(role: Role, motion: Motion, contact_s: float) -> float:
+    """Time before the contact at which the clock must begin to show a stated speed; 0 where it is never driven."""
+    if motion.standing or role.actor.speed_mph is None:
+        return 0.0
+    seen = contact_s - motion.seen_at(usual_speed(role), contact_s)
+    return seen + SPEED_SHOWS_S if math.isfinite(seen) else 0.0
 
 
 def unseen_maneuver(actor: Actor, course: Course, poses: Floats) -> str | None:

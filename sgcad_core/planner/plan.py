@@ -14,7 +14,7 @@ from functools import cached_property
 
 from sgcad_core.case.records import ObservedContact, Record, Trajectory
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.actor_plan import Role, usual_speed
+from sgcad_core.planner.actor_plan import Role
 from sgcad_core.planner.aftermath.later_contacts import Ending, expect_later_contacts, strikes_of, struck_before
 from sgcad_core.planner.aftermath.rest_candidates import MISSED
 from sgcad_core.planner.aftermath.rest_fit import Impact
@@ -34,7 +34,7 @@ from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.departures import departs, departure_station
 from sgcad_core.planner.lines.gore_lines import into_gores
 from sgcad_core.planner.lines.maneuver_course import course_of
-from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
+from sgcad_core.planner.maneuver_visible import seen_s, unseen_evasion, unseen_maneuver
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
@@ -54,8 +54,6 @@ _LEAST_LEAD_S = 3.0
 """Where a fast vehicle's road is too short for the usual time before the contact, it starts where the road does."""
 _STILL_S = 1.0
 """Time on the undisturbed course before a maneuver begins."""
-_SPEED_SHOWS_S = 0.3
-"""Time for which a stated speed is driven before the contact at least."""
 
 
 class Plan(Record):
@@ -200,7 +198,7 @@ class _Cast:
         meeting = found.meeting
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
         lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
-        lead = max([lead, *(_seen_s(option.role, m, own) for option, m, own in pair)])
+        lead = max([lead, *(seen_s(option.role, m, own) for option, m, own in pair)])
         rest_s = [own - m.starts_s for _, m, own in pair if m.starts_s is not None]
         lead = max([lead, *(since + WAITS_S for since in rest_s)])
         driven = ((o, m, own) for o, m, own in pair if not m.standing and m.starts_s is None)
@@ -298,11 +296,3 @@ class _Cast:
         actor, course = self.actors[name], self.courses[name]
         place = Place(preferred_station(actor, course, size_m(actor)[0]), 0.0, 0.0, 0.0)
         return Role(actor, course, size_m(actor), place, surface=self.behavior.surface)
-
-
-def _seen_s(role: Role, motion: Motion, contact_s: float) -> float:
-    """Time before the contact at which the clock must begin to show a stated speed; 0 where it is never driven."""
-    if motion.standing or role.actor.speed_mph is None:
-        return 0.0
-    seen = contact_s - motion.seen_at(usual_speed(role), contact_s)
-    return seen + _SPEED_SHOWS_S if math.isfinite(seen) else 0.0

@@ -16,6 +16,8 @@ MANY = 3
 """Kinds in one literal that make it a table."""
 IDS = set(ACTORS), {record.kind for record in JUNCTIONS if record.rule or record.intersections}
 ALLOWED = {
+    "sgcad_core/formats/commonroad/write.py": "categories of OpenSCENARIO in CommonRoad's words: no kinds of ours",
+    "sgcad_core/formats/dsl/write.py": "categories of OpenSCENARIO in the words of its DSL: no kinds of ours",
     "sgcad_core/reading/motion/motion_record.py": "where a vehicle comes from: a side road is no junction",
     "sgcad_core/reading/roads/road_mentions.py": "what words call a road: freeways and crossroads are no junctions",
     "research/generator/crash/crash.py": "odds of made reports: the embedded model learned these kinds alone",

@@ -8,8 +8,8 @@ import pytest
 from sgcad_core.settings import ROOT
 
 COMMAND = re.compile(r'^if __name__ == "__main__":', re.MULTILINE)
-OWN_ENVIRONMENT = {"research.checks.asam_checkers"}
-"""Runs in the environment that `make qc` makes."""
+OWN_ENVIRONMENT = {"research.checks.asam_checkers", "research.checks.commonroad_reader"}
+"""Run in environments of their own: that of `make qc`, and one with an older protobuf."""
 COMMANDS = sorted(
     name
     for file in (ROOT / "research").rglob("*.py")

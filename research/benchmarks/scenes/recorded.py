@@ -12,9 +12,10 @@ import argparse
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import yaml
 from pydantic import PrivateAttr
@@ -27,7 +28,7 @@ from sgcad_core.asking.repairs import exclude
 from sgcad_core.case.records import Context, Finding, Generation, Query
 from sgcad_core.config import Config
 from sgcad_core.findings import HARD, SOFT
-from sgcad_core.interfaces import Decoder
+from sgcad_core.interfaces import Backbone, Decoder
 from sgcad_core.settings import CONFIGS, ROOT
 
 REPORTS = ROOT / "tests" / "recorded" / "reports"
@@ -62,15 +63,21 @@ class Row:
         return f"| {' | '.join(map(str, cells))} |" + (f" {self.why}" if self.why else "")
 
 
-class Recorder(Scripted):
+class Recorder(Backbone):
     """Answers whatever it is asked, and notes the digest of each question."""
 
+    gives_logits: ClassVar[bool] = False
+    file: Path
     _noted: dict[str, dict[str, str]] = PrivateAttr(default_factory=dict)
 
     def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
         """The recorded answer to another question as well."""
         self._noted.setdefault(query.case, {})[query.stage or ""] = question_digest(query)
-        return Generation(text=self._answer(context, query))
+        return Generation(text=self._script.answer(context, query))
+
+    @cached_property
+    def _script(self) -> Scripted:
+        return Scripted(file=self.file)
 
     @property
     def noted(self) -> dict[str, dict[str, str]]:
@@ -82,7 +89,7 @@ def recorded_config(keep: bool = False) -> Config:
     """configs/recorded.yaml without a tracker; `keep`: questions are noted instead of compared."""
     raw = configs.load(CONFIGS / "recorded.yaml").raw | {"tracker": {"name": "none"}}
     config = configs.build(raw, "recorded", "recorded.yaml")
-    if not keep or not isinstance(config.backbone, Scripted):
+    if not keep or not isinstance(config.backbone, Scripted) or config.backbone.file is None:
         return config
     return config.model_copy(update={"backbone": Recorder(file=config.backbone.file)})
 

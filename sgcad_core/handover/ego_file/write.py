@@ -11,14 +11,12 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from scenariogeneration.xosc.enumerations import VersionBase
-
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.formats.openscenario.roads.road_network import roads_of
 from sgcad_core.formats.openscenario.writing.entities import center_ahead_m, environment
 from sgcad_core.formats.openscenario.writing.header import Source, comments, file_header
 from sgcad_core.formats.openscenario.writing.versions import DEFAULT_VERSION, Version
-from sgcad_core.formats.openscenario.writing.writer import WRITING
+from sgcad_core.formats.openscenario.writing.writer import library_version
 from sgcad_core.handover.ego_file import ego as me
 from sgcad_core.handover.ego_file.cue import Cue, cue_of
 from sgcad_core.handover.ego_file.elements import node, of_entity, of_time, position, private, speed, trigger
@@ -55,8 +53,7 @@ def write_ego(staging: Staging, about: EgoFile) -> str:
     roads = roads_of(about.xodr) if about.xodr else None
     cue = cue_of(staging, center_ahead_m(staging.script.info(staging.ego)))
     others, move = others_of(staging, cue.contact_s, cue.lead_rows), me.ego_motion(staging, cue.contact_s)
-    with WRITING:
-        VersionBase().setVersion(minor=minor)
+    with library_version(minor):
         around = environment(about.behavior, minor)
         surroundings = None if around is None else around.get_element()
         entities = [

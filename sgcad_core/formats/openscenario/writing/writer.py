@@ -10,7 +10,8 @@ import datetime
 import re
 import threading
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,11 +38,23 @@ from sgcad_core.records.specs import BehaviorSpec
 
 END = "EndTime"
 """The file's parameter for people who cut a scenario short: when it stops, seconds."""
-WRITING = threading.Lock()
-"""scenariogeneration keeps its version in a class: one file at a time."""
+_WRITING = threading.Lock()
 DATE = datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC)
 """Fixed, so that equal scenarios are equal files."""
 _NOT_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+@contextmanager
+def library_version(minor: int) -> Iterator[None]:
+    """Within it scenariogeneration writes version 1.`minor`; it keeps its version in a class, so one file at a time."""
+    base = VersionBase()
+    with _WRITING:
+        before = base.version_minor
+        base.setVersion(minor=minor)
+        try:
+            yield
+        finally:
+            base.setVersion(minor=before)
 
 
 def write_xosc(
@@ -68,8 +81,7 @@ def write_xosc(
     timed = [_Timed(held_at_standstill(m), ahead, size) for m, ahead, size in zip(moves, reaches, sizes, strict=True)]
     told = timed if handover is None else None
     parts = told or event_actors(moves, reaches, handover or EventOptions())
-    with WRITING:
-        VersionBase().setVersion(minor=minor)
+    with library_version(minor):
         scenario = xosc.Scenario(
             _NOT_XML.sub("?", name),
             "SG-CADVLM",

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scenariogeneration.xosc.enumerations import VersionBase
 
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.openscenario.check import xosc_findings
 from sgcad_core.formats.openscenario.playing.player import entity_boxes, play
 from sgcad_core.formats.openscenario.writing.entities import center_ahead_m
-from sgcad_core.formats.openscenario.writing.writer import write_xosc
+from sgcad_core.formats.openscenario.writing.writer import library_version, write_xosc
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.geometry.plane import wrap_angle
 from sgcad_core.kinds import ACTORS
@@ -211,3 +212,13 @@ def test_the_end_is_a_parameter_of_the_file():
     assert 'name="EndTime" parameterType="double" value="2.95"' in text
     short = text.replace('value="2.95"', 'value="1.5"')
     assert play(short)[0].t_s[-1] == pytest.approx(1.5)
+
+
+def test_a_file_of_an_old_version_leaves_the_librarys_version_as_it_was():
+    before = VersionBase.version_minor
+    with library_version(0):
+        assert VersionBase.version_minor == 0
+    assert VersionBase.version_minor == before
+    with pytest.raises(ZeroDivisionError), library_version(0):
+        raise ZeroDivisionError
+    assert VersionBase.version_minor == before

@@ -1,6 +1,6 @@
 """How many ego files load in another player, and in how many an ego that is driven as in the report meets its crash.
 
-    python -m research.benchmarks.scenes.ego_files RUNS [--library libesminiLib.so] [--pace 1.0] [--late 0] [--most N]
+    python -m research.benchmarks.handover.ego_files RUNS [--library libesminiLib.so] [--pace 1.0] [--late 0] [--most N]
 
 The ego's file of every executed case below RUNS is written anew and driven from outside: along the way of the report's
 driver, `--pace` times as fast, `--late` seconds after the start. Without a library our own player plays it, with the
@@ -24,8 +24,8 @@ import numpy as np
 from flows.drive.script_of_case import case_folders
 from flows.export.ego_files import ROLES, write_ego_files
 from flows.export.finished_case import FinishedCase
-from research.benchmarks.scenes import esmini_library
-from research.benchmarks.scenes.esmini_library import NOT_LOADED, STEP_S
+from research.benchmarks.handover import esmini_library
+from research.benchmarks.handover.esmini_library import NOT_LOADED, STEP_S
 from sgcad_core.case.records import ObservedContact, Trajectory
 from sgcad_core.errors import SgcadError
 from sgcad_core.execution.contact import first_with

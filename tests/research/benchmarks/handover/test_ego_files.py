@@ -4,7 +4,7 @@ import pytest
 
 from flows.case.run_case import run_case
 from flows.case_files.find_cases import cases_of
-from research.benchmarks.scenes import ego_files
+from research.benchmarks.handover import ego_files
 from sgcad_core.config import load
 
 REPORT = (

@@ -1,6 +1,6 @@
 """Plays an ego's file in esmini's library, with the ego set from outside at every step. One scenario a process.
 
-    python -m research.benchmarks.scenes.esmini_library LIBRARY EGO.xosc EGO_NAME POSES.npy OUT.npz
+    python -m research.benchmarks.handover.esmini_library LIBRARY EGO.xosc EGO_NAME POSES.npy OUT.npz
 
 POSES: (n, 4) x, y, heading, speed of the ego's origin every 0.05 s. OUT: `names`, and for each a table of box centers
 (m, 4) x, y, heading, speed. Ends with 3 where esmini does not load the file. Knows nothing of cases.
@@ -8,6 +8,7 @@ POSES: (n, 4) x, y, heading, speed of the ego's origin every 0.05 s. OUT: `names
 
 from __future__ import annotations
 
+import argparse
 import ctypes
 import math
 import sys
@@ -65,16 +66,22 @@ def _center(se: ctypes.CDLL, number: int) -> tuple[float, ...]:
     return x, y, state.h, state.speed
 
 
-def main(arguments: Sequence[str]) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Play one file."""
-    library, file, ego, poses, out = arguments
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("library", type=Path)
+    parser.add_argument("file", type=Path)
+    parser.add_argument("ego")
+    parser.add_argument("poses", type=Path)
+    parser.add_argument("out", type=Path)
+    options = parser.parse_args(arguments)
     try:
-        tables = play(Path(library), Path(file), ego, np.load(poses))
+        tables = play(options.library, options.file, options.ego, np.load(options.poses))
     except RuntimeError:
         return NOT_LOADED
-    np.savez(out, names=np.array(list(tables)), **tables)
+    np.savez(options.out, names=np.array(list(tables)), **tables)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

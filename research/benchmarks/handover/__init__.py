@@ -1,0 +1,1 @@
+"""Benchmarks of files in which one vehicle waits for its driver."""
