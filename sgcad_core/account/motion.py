@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -20,9 +20,10 @@ from sgcad_core.metrics.labels.course_labels import POINT_DEG, CourseLabel, Rest
 from sgcad_core.metrics.labels.observed_crash import VehicleMotion
 from sgcad_core.metrics.lane_places import lane_steps
 from sgcad_core.metrics.rest_error import attitude_of
-from sgcad_core.metrics.road_departure import left_road
+from sgcad_core.metrics.road_departure import hand_of, left_road
 from sgcad_core.metrics.told_lanes import LANE_WORDS, TURN_LANES, ToldLane, position, told_lane
 from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
+from sgcad_core.records.course import DepartureSide
 from sgcad_core.records.facts import Fact, Value
 
 _HEADING_RAD = math.radians(45.0 + 22.5)
@@ -30,8 +31,6 @@ _HEADING_RAD = math.radians(45.0 + 22.5)
 _LIES = {"wheels": "wheels", "roof": "roof", "left": "left side", "right": "right side"}
 _STANDS_MPS = 1.0
 """Below it a vehicle stands, as reports have it."""
-_ALONG = math.sin(math.radians(20.0))
-"""Sine of the angle to its way below which a compass word tells no side of it."""
 _SPIN_DEG = 60.0
 """Tolerance of a stated angle of spin: reports give quarter turns."""
 
@@ -166,11 +165,8 @@ def _departs(made: ExecutedCase, who: str, value: Value) -> Comparison:
     seen = left_road(made.graph, poses, made.sizes[who][0])
     if seen is None:
         return Comparison(False, None, "it is on the road at its first contact")
-    wanted = value
-    if value in COMPASS:
-        across = math.sin(angle_of(value) - float(poses[0, 2]))
-        wanted = "either" if abs(across) < _ALONG else "left" if across > 0 else "right"
-    return Comparison(wanted in ("either", seen), seen, f"it leaves the road on the {seen}")
+    wanted = hand_of(cast("DepartureSide", value), float(poses[0, 2]))
+    return Comparison(wanted in (None, seen), seen, f"it leaves the road on the {seen}")
 
 
 def _joins(road_name: Callable[[ExecutedCase, str], str | None]) -> Judge:

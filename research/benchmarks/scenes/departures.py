@@ -18,27 +18,17 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from research.benchmarks.run_tables import by_config, show
-from research.benchmarks.scenes.lanes import Run
+from research.benchmarks.scenes.lanes import Figures, Run
 from sgcad_core.metrics.road_departure import left_road
 
 HEAD = "| config | cases | generated | off the road | side | called whole on the road |"
 _LIVING = ("animal", "pedestrian", "cyclist")
-
-
-@dataclass
-class Figures:
-    """Counts over the cases of one config; `lines` name what is counted against."""
-
-    counts: Counter[str] = field(default_factory=Counter)
-    lines: list[str] = field(default_factory=list)
 
 
 def coded_side(truth: dict[str, Any]) -> str | None:

@@ -37,7 +37,7 @@ OTHER_LANE_COST = 1.0
 """More than another speed: a told lane is taken wherever the two can meet from it."""
 _OTHER_SIDE, _STAYS_ON_ROAD = 0.25, 2.5
 """Costs of leaving the road on the unlikelier side, and of a told departure that is not driven."""
-_BEHIND_TURN_M = 16.0
+_OFF_BEHIND_TURN_M = 16.0
 """Length of the way off the road of a vehicle that turns first."""
 ASKEW, _STEERS = "stands askew", "steers aside before contact"
 _LEAVES = "leaves its lane"
@@ -89,7 +89,7 @@ def _departures(role: Role, *, fine: bool) -> list[Drift]:
         wide = aside_m(role.course, side)
         found += _shifts(role, wide, [(share, cost + _OTHER_SIDE * rank) for share, cost in shares])
     if role.actor.maneuver in TURNING:
-        found = [drift._replace(length_m=min(drift.length_m, _BEHIND_TURN_M)) for drift in found]
+        found = [drift._replace(length_m=min(drift.length_m, _OFF_BEHIND_TURN_M)) for drift in found]
     return sorted([*found, Drift(_STAYS_ON_ROAD)], key=lambda drift: drift.cost)
 
 

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.kinds import Maneuver
-from sgcad_core.metrics.labels.course_labels import POINT_DEG
-from sgcad_core.metrics.rest_error import compass_rad
+from sgcad_core.metrics.road_departure import hand_of
 from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.records.course import DepartureSide
@@ -27,7 +26,6 @@ _STAYS: frozenset[Maneuver] = frozenset({"u_turn", "stopped", "parked", "backing
 _BEHIND_TURN_M = 12.0
 _LEAST_MEDIAN_M, _BESIDE_M = 0.6, 1.0
 """Width from which a median is one, and how far over the edge of its lanes a vehicle in a narrow one is."""
-_ALONG = math.sin(math.radians(20.0))
 _BEFORE_M, _BEND_RAD = 40.0, math.radians(4.0)
 """Length before the place over which a bend shows, and its least angle."""
 
@@ -53,11 +51,9 @@ def departure_sides(course: Course, station_m: float, told: DepartureSide) -> tu
     A compass word becomes a hand by the heading there. Where no side is told it is the outside of a bend, else the
     right, since nothing has to be crossed.
     """
-    if told in ("left", "right"):
-        return (1 if told == "left" else -1,)
     heading = float(course.path.poses([station_m])[0, 2])
-    if told in POINT_DEG and abs(across := math.sin(compass_rad(POINT_DEG[told]) - heading)) > _ALONG:
-        return (1 if across > 0 else -1,)
+    if hand := hand_of(told, heading):
+        return (1 if hand == "left" else -1,)
     came = float(course.path.poses([station_m - _BEFORE_M])[0, 2])
     bend = math.remainder(heading - came, 2 * math.pi)
     return (1, -1) if bend < -_BEND_RAD else (-1, 1)
