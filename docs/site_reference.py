@@ -16,8 +16,9 @@ from mkdocs.structure.files import File, Files
 
 from flows.catalogue import TRAITS, _fields, _type
 from sgcad_core.config import SCALARS, Config
+from sgcad_core.entry_points import KINDS, catalogue
 from sgcad_core.interfaces import Plugin
-from sgcad_core.registry import KINDS, catalogue, plugin_class
+from sgcad_core.registry import plugin_class
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:

@@ -1,5 +1,7 @@
 """The documentation: every link leads somewhere, the site builds, the page of figures stays a page."""
 
+import ast
+import importlib
 import importlib.util
 import re
 import subprocess
@@ -17,6 +19,7 @@ WRITTEN = [
     ROOT / "Makefile", ROOT / "CONTRIBUTING.md", ROOT / "plugins" / "backbone" / "mini" / "weights" / "README.md",
     *(file for folder in SOURCES for file in sorted((ROOT / folder).rglob("*.py"))),
 ]  # fmt: skip
+OURS = ("sgcad_core", "plugins", "flows", "research")
 COMMAND = re.compile(r"python -m\s+(?:\\\s+)?(research[\w.]*\w)")
 RESEARCH = re.compile(r"(?<![\w/.])research/[\w/.]*\w|(?<![\w/.])research(?:\.\w+)+")
 LINK = re.compile(r"\]\((?!https?://|#|mailto:)([^)#\s]+)(?:#[^)]*)?\)")
@@ -47,6 +50,15 @@ def test_the_figures_fit_on_a_page_and_each_has_its_command_and_date():
     for section in text.split("\n## ")[1:]:
         assert re.search(r"`(?:sgcad|python -m|make) ", section), section.splitlines()[0]
         assert re.search(r"\d{1,2} (?:November|December) 20\d\d", section)
+
+
+@pytest.mark.parametrize("script", sorted((ROOT / "docs").glob("*.py")), ids=lambda script: script.name)
+def test_a_script_of_the_documentation_imports_names_that_are_there(script):
+    """The hook of the site needs packages that the tests do not have: only its imports are tested here."""
+    for node in ast.walk(ast.parse(script.read_text())):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in OURS:
+            module = importlib.import_module(node.module)
+            assert [name.name for name in node.names if not hasattr(module, name.name)] == [], node.module
 
 
 def _module(name):
