@@ -32,8 +32,10 @@ def _cut(statement: Statement, roster: Roster) -> list[Segment]:
 
 
 def _of_the_impact(statement: Statement) -> Statement:
-    """ "The impact caused V1 to rotate" with V1 as subject; "V1 after striking V2 rotated" with V1 alone."""
+    """ "The impact caused V1 to rotate" and "V1's front struck a pole" with V1 as subject; "V1 after striking V2
+    rotated" with V1 alone."""
     text = rule("course_rest.caused").sub(_caused, statement.text)
+    text = rule("course_rest.own_side").sub(r"\g<who>", text)
     text = rule("course_rest.after_striking").sub(r"\g<who>", text)
     return statement if text == statement.text else statement._replace(text=text)
 
