@@ -97,6 +97,9 @@ def _maneuver(crash: CrashFacts, roads: RoadFacts, of: str, value: str) -> Chang
     v = crash.vehicle(of)
     if v is None or (value == "overtaking" and len(crash.vehicles) == 1):  # a lone vehicle passes nothing
         return None
+    first = first_contact(crash)
+    if value in TURNS and first is not None and of not in (first.striker, first.struck):  # nothing tells it turns
+        return None
     new = moved(v, cast("Maneuver", value))
     if value in TURNS and roads.junction.kind == "none":
         roads = replace(roads, junction=replace(roads.junction, kind=FOUR_LEG))

@@ -52,6 +52,13 @@ def test_a_lone_vehicle_passes_nothing() -> None:
     assert fused(PLAIN, maneuver_V1="overtaking").crash.vehicles[0].maneuver == "overtaking"
 
 
+def test_a_vehicle_outside_the_first_contact_is_given_no_turn() -> None:
+    three = f"{PLAIN} V3 was traveling west on the same road."
+    assert fused(three, maneuver_V3="turn_left").crash.vehicles[2].maneuver == "straight"
+    assert fused(three, maneuver_V3="stopped").crash.vehicles[2].maneuver == "stopped"
+    assert fused(three, maneuver_V1="turn_left").crash.vehicles[0].maneuver == "turn_left"
+
+
 def test_lanes_show_in_the_layout_of_the_road() -> None:
     for answer, want in (("own3", "own3+both6"), ("both4", "own2+both4")):
         found = fused(PLAIN, lanes_V1=answer)
