@@ -121,8 +121,9 @@ def checked_narrative(text: TracedText, source: Path) -> TracedText:
     words = re.findall(r"[^\W\d_]+", text.text.lower())
     if len(words) < MIN_WORDS:
         raise BadInput(f"{source}: the narrative has {len(words)} words, at least {MIN_WORDS} are needed: is it empty?")
-    common = sum(w in _FUNCTION_WORDS for w in words) / len(words)
-    if len(words) >= 25 and common < 0.12:
+    whole = [w for w in words if len(w) > 1 or w == "a"]  # "V1's" is no word of any language
+    common = sum(w in _FUNCTION_WORDS for w in whole) / max(len(whole), 1)
+    if len(whole) >= 25 and common < 0.12:
         raise BadInput(f"{source}: does not read like English ({common:.0%} common words, 12 % expected): translate it")
     return text
 

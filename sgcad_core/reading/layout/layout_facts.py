@@ -132,7 +132,7 @@ class _Builder:
                 used[v.heading] = max(used.get(v.heading, 1), least_lanes(v, self.facts.crash))
         default = 2 if road.kind == "freeway" or road.lanes.divided else self.facts.junction.circle_lanes or 1
         lanes = _of_freeway(road.lanes) if road.kind == "freeway" else road.lanes
-        numbered = any(v.lane for v in along)
+        numbered = any(v.lane for v in self.facts.crash.vehicles if v in along or v.id in road.vehicles)
         default = max(default, self.defaults.lanes_each_way)
         both = len({v.heading for v in along if v.heading_stated and v.maneuver != "parked"}) > 1
         return carriageway(lanes, axis, lead, used, default, numbered=numbered, against=both)

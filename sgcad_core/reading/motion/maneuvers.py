@@ -116,7 +116,7 @@ def _moving_since(motion: VehicleMotion, since: list[ManeuverCue]) -> Decision:
     for kind in dict.fromkeys((*_CHANGES, *_PLAIN)):
         if cue := next((d for d in since if d.kind == kind), None):
             return Decision(kind, cue=cue)
-    wants = [d for d in motion.cues if d.kind.startswith("want_turn_") and d.weight >= 3]
+    wants = [d for d in motion.cues if d.kind.startswith("want_") and d.weight >= 3]
     if wants and any(d.kind == "moved_on" and d.when > wants[-1].when for d in since):
         return _as_told(wants[-1])
     if cue := next((d for d in since if d.kind == "lane_change"), None):
@@ -187,7 +187,7 @@ def _turn(motion: VehicleMotion, hit: tuple[Area | None, ...], same_way: Maneuve
         return _as_told(max(acts, key=lambda d: d.weight))
     if cue := motion.cue("code:into_opposite"):
         return Decision("turn_left", cue=cue)
-    wants = [d for d in motion.cues if d.kind.startswith("want_turn_") and d.weight >= 2]
+    wants = [d for d in motion.cues if d.kind.startswith("want_") and d.weight >= 2]
     if motion.has_cue("code:over_left") or motion.has_cue("crossing_centerline", 3):
         wants = []
     if wants and not from_behind and (_moved_on(motion, wants[0]) or not motion.has_cue("stopped", 2)):
@@ -197,6 +197,8 @@ def _turn(motion: VehicleMotion, hit: tuple[Area | None, ...], same_way: Maneuve
 
 def _as_told(cue: ManeuverCue) -> Decision:
     """The turn that a cue tells or wants."""
+    if cue.kind == "want_u_turn":
+        return Decision("u_turn", cue=cue)
     return Decision("turn_left" if cue.kind.endswith("turn_left") else "turn_right", cue=cue)
 
 

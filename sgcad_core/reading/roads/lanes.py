@@ -51,6 +51,8 @@ class LaneFacts:
     divided: bool | None = None
     one_lane: bool = False
     """ "one lane of travel", of whichever direction: the whole of a one-way street, else one of several."""
+    highway: bool = False
+    """ "a five-lane highway": a total of three and more is told of a highway."""
     own: int | None = None
     """Lanes in the direction of the vehicle that the text speaks of: "in lane two of three lanes"."""
     where: Mapping[str, Source] = field(default_factory=dict, compare=False, repr=False)
@@ -59,7 +61,7 @@ class LaneFacts:
     @property
     def empty(self) -> bool:
         """Whether nothing at all was found."""
-        return replace(self, one_lane=False) == LaneFacts()
+        return replace(self, one_lane=False, highway=False) == LaneFacts()
 
 
 # ------------------------------------------------------------------ whole-road words
@@ -108,7 +110,8 @@ def lane_facts(text: str) -> LaneFacts:
         one_way=one_way if one_way != two_way else None,
         one_way_toward=_one_way_toward(text) if alone else None,
         center_turn_lane="CENTERLANE" in marked, median=median, divided=divided,
-        one_lane=bool(rule("lanes.one_lane").search(text)), own=number(own[1] or own[2]) if own else None,
+        one_lane=bool(rule("lanes.one_lane").search(text)), highway=bool(rule("lanes.of_highway").search(text)),
+        own=number(own[1] or own[2]) if own else None,
     )  # fmt: skip
 
 

@@ -58,6 +58,7 @@ def merged(first: LaneFacts, more: LaneFacts) -> LaneFacts:
         one_way_toward=first.one_way_toward or more.one_way_toward,
         center_turn_lane=first.center_turn_lane or more.center_turn_lane, median=first.median or more.median,
         divided=more.divided if first.divided is None else first.divided, one_lane=first.one_lane or more.one_lane,
+        highway=first.highway or more.highway,
     )  # fmt: skip
     return with_sources_of_both(found, first, more)
 

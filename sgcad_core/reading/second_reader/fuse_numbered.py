@@ -100,12 +100,21 @@ def _maneuver(crash: CrashFacts, roads: RoadFacts, of: str, value: str) -> Chang
     first = first_contact(crash)
     if value in TURNS and first is not None and of not in (first.striker, first.struck):  # nothing tells it turns
         return None
+    if value == "lane_change_left" and _comes_against(crash, v):  # to the left it is over the middle of the road
+        value = "crossing_centerline"
     new = moved(v, cast("Maneuver", value))
     if value in TURNS and roads.junction.kind == "none":
         roads = replace(roads, junction=replace(roads.junction, kind=FOUR_LEG))
     kept = new.exit_heading is not None
     gone = tuple(f"vehicles.{of}.{name}" for name in _OF_TURN if not (kept and name == "exit_heading"))
     return Changed(_with(crash, new), roads, {f"vehicles.{of}.maneuver": value}, gone)
+
+
+def _comes_against(crash: CrashFacts, v: VehicleFacts) -> bool:
+    """Whether a vehicle first touches one that is told to come the other way."""
+    other = crash.first_met(v.id)
+    told = other is not None and other.heading is not None and other.heading_stated and v.heading_stated
+    return told and v.heading is not None and other is not None and other.heading == turned(v.heading, 180)
 
 
 def moved(v: VehicleFacts, maneuver: Maneuver) -> VehicleFacts:

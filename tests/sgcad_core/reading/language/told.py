@@ -63,7 +63,7 @@ def _besides(reading: Reading) -> dict[str, object]:
         "roads.merge_lane": roads.merge_lane, "roads.crosswalk": roads.crosswalk, "roads.urban": roads.urban,
         "roads.beside": roads.beside, "roads.leaves": roads.leaves, "junction.unsupported": roads.junction.unsupported,
         "junction.circle_lanes": roads.junction.circle_lanes, "junction.skew_deg": roads.junction.skew_deg,
-        "junction.offset": roads.junction.offset,
+        "junction.offset": roads.junction.offset, "roads.highway": any(road.lanes.highway for road in roads.roads),
     }  # fmt: skip
     return found | {f"near.{vehicle}": how for vehicle, how in (near.evasions if near else ())}
 

@@ -52,6 +52,13 @@ def test_a_lone_vehicle_passes_nothing() -> None:
     assert fused(PLAIN, maneuver_V1="overtaking").crash.vehicles[0].maneuver == "overtaking"
 
 
+def test_a_lane_change_into_one_that_comes_the_other_way_crosses_the_middle_of_the_road() -> None:
+    against = "V1 was traveling east on a road. V2 was traveling west on it. The front of V1 struck the left of V2."
+    assert fused(against, maneuver_V1="lane_change_left").crash.vehicles[0].maneuver == "crossing_centerline"
+    assert fused(against, maneuver_V1="lane_change_right").crash.vehicles[0].maneuver == "lane_change_right"
+    assert fused(PLAIN, maneuver_V1="lane_change_left").crash.vehicles[0].maneuver == "lane_change_left"
+
+
 def test_a_vehicle_outside_the_first_contact_is_given_no_turn() -> None:
     three = f"{PLAIN} V3 was traveling west on the same road."
     assert fused(three, maneuver_V3="turn_left").crash.vehicles[2].maneuver == "straight"
