@@ -81,7 +81,7 @@ def _add_maneuvers(score: dict[int, float], crash: CrashTold, inferred: CrashInf
             score[180] += 0.5
     for off, turn in (("departing_road_left", 180), ("departing_road_right", 0)):
         if {"parked", off} == {inferred.maneuvers[a], inferred.maneuvers[b]}:
-            score[turn] += 1.5  # on either side vehicles are parked along the traffic there
+            score[turn] += 2.0  # on either side vehicles are parked along the traffic there
     _add_kinds(score, crash, inferred, a, b)
     into = {"code:into_opposite": 90, "code:into_same": 270}
     for me, sign in ((a, 1), (b, -1)):
