@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
 
-from sgcad_core.geometry.plane import Floats, box_gaps, first_overlap
+from sgcad_core.geometry.plane import Floats
+from sgcad_core.planner.aftermath.blow import Blow, blow, lacking, part
 from sgcad_core.planner.aftermath.ground_friction import apply_friction
 from sgcad_core.planner.aftermath.hitch import Hitch, draw_together, equalize_velocities
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, slow_parting
@@ -22,9 +22,11 @@ from sgcad_core.planner.aftermath.wreck_bodies import (
     Separation,
     Touch,
     center_of,
+    first_sample,
     key_of,
     last_move,
     may_meet,
+    pairs_apart,
     separation,
     separations,
     set_on_script,
@@ -84,6 +86,8 @@ class Wreck:
     """Pairs that touched, with the time of it."""
     gone: set[tuple[str, str]] = field(default_factory=set)
     """Pairs of which one gave way to the other."""
+    blows: dict[tuple[str, str], Blow] = field(default_factory=dict)
+    """What pairs that still hold each other lack of the velocities with which they part."""
     now: float = 0.0
 
     def __post_init__(self) -> None:
@@ -95,8 +99,8 @@ class Wreck:
 
         `until`: stop there; the bodies are then as they are at that sample, the poses behind it are the scripts'.
         """
-        pairs = self._pairs()
-        start = self._start(pairs)
+        pairs = pairs_apart(self.movers)
+        start = first_sample(pairs, self.count)
         poses = {m.name: m.script.copy() for m in self.movers}
         drives = {m.name: last_move(m.script) for m in self.movers}
         before, end = None, min(self.count - 1, until or self.count)
@@ -117,23 +121,6 @@ class Wreck:
         """Whether nothing moves and no touch is so new that time alone would change its effect."""
         latest = max(self.touches.values(), default=0.0)
         return self.now - latest > _TOLD_HELD_S + STEP_S and all(m.body.stands for m in self.movers)
-
-    def _pairs(self) -> list[Pair]:
-        """All pairs but those that overlap from the start: parts of one thing, or scenery."""
-        found = []
-        for a, b in combinations(self.movers, 2):
-            first = box_gaps(a.script[:1], a.body.size, b.script[:1], b.body.size)[0]
-            if first > 0 and not (a.fixed and b.fixed):
-                found.append((a, b))
-        return found
-
-    def _start(self, pairs: Sequence[Pair]) -> int:
-        """The sample before the first overlap of any two scripts; the last one where there is none."""
-        first = self.count
-        for a, b in pairs:
-            hit = first_overlap(a.script, a.body.size, b.script, b.body.size)
-            first = first if hit is None else min(first, hit)
-        return max(first - 1, 0)
 
     # -------------------------------------------------------------- one sample of the clock
     def _sample(self, k: int, pairs: Sequence[Pair]) -> None:
@@ -205,11 +192,13 @@ class Wreck:
     # -------------------------------------------------------------- touches
     def _resolve(self, near: Sequence[Pair], sample: int) -> Sequence[Separation] | None:
         """Applies all touches at one time. Returns the separation of each pair; None where bodies were moved."""
+        self._let_part(sample)
         gaps = separations(near)
         touching = [(a, b, seen) for (a, b), seen in zip(near, gaps, strict=True) if self._touches(a, b, seen, sample)]
         if not touching and not self.hitches:
             return gaps
         corners = [touch_points(a.body, b.body) for a, b, _ in touching]
+        wanted = self._blow(touching, corners)
         for (a, b, seen), points in zip(touching, corners, strict=True):
             at = center_of(points)
             collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample), self.friction)
@@ -226,9 +215,29 @@ class Wreck:
         for (a, b, seen), points in zip(touching, corners, strict=True):
             self._keep_seen(a, b, seen, points, sample)
             parted |= self._part(a, b, seen)
+        if wanted is not None:
+            a, b, _ = touching[0]
+            self.blows[key_of(a, b)] = lacking(wanted, a.body, b.body)
         for hitch in self.hitches:
             self._joined(hitch, draw_together)
         return None if parted or self.hitches else gaps
+
+    def _blow(self, touching: Sequence[tuple[Mover, Mover, Separation]], corners: list[list[Point]]) -> Blow | None:
+        """How the two of a new touch will part; None of an old one, and where more bodies have a part in it."""
+        if len(touching) != 1:
+            return None
+        a, b, seen = touching[0]
+        coupled = {name for hitch in self.hitches for name in (hitch.first, hitch.second)}
+        if self.now - self.touches[key_of(a, b)] > 1e-9 or a.gives_way or b.gives_way or {a.name, b.name} & coupled:
+            return None
+        return blow(a.body, b.body, center_of(corners[0]), seen.normal, self.restitution, self.friction)
+
+    def _let_part(self, sample: int) -> None:
+        """Lets bodies part that no longer hold each other."""
+        for key in list(self.blows):
+            a, b = (self.named[name] for name in key)
+            if self._held_s(a, b, sample) <= 0.0:
+                part(self.blows.pop(key), a.body, b.body)
 
     def _joined(self, hitch: Hitch, act: Callable[[Hitch, Body, Body], bool]) -> bool:
         """Applies a hitch to its two bodies, once both are free."""

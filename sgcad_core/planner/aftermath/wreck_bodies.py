@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.geometry.plane import Floats
+from sgcad_core.geometry.plane import Floats, box_gaps, first_overlap
 from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
 from sgcad_core.planner.aftermath.impact import Body, Point
 from sgcad_core.planner.motion import STEP_S
@@ -101,6 +102,25 @@ def last_move(script: Floats) -> int:
     """The last sample that differs from the one before it."""
     moves = np.flatnonzero((np.diff(script, axis=0) != 0.0).any(axis=1))
     return int(moves[-1]) + 1 if len(moves) else 0
+
+
+def pairs_apart(movers: Sequence[Mover]) -> list[Pair]:
+    """All pairs but those that overlap from the start: parts of one thing, or scenery."""
+    found = []
+    for a, b in combinations(movers, 2):
+        first = box_gaps(a.script[:1], a.body.size, b.script[:1], b.body.size)[0]
+        if first > 0 and not (a.fixed and b.fixed):
+            found.append((a, b))
+    return found
+
+
+def first_sample(pairs: Sequence[Pair], count: int) -> int:
+    """The sample before the first overlap of any two scripts; the last of `count` where there is none."""
+    first = count
+    for a, b in pairs:
+        hit = first_overlap(a.script, a.body.size, b.script, b.body.size)
+        first = first if hit is None else min(first, hit)
+    return max(first - 1, 0)
 
 
 def key_of(a: Mover, b: Mover) -> tuple[str, str]:

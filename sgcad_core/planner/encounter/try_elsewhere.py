@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from itertools import islice, zip_longest
+from itertools import chain, islice, zip_longest
 from typing import NamedTuple
 
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact
 from sgcad_core.planner.encounter.encounter_search import along_sides
 from sgcad_core.planner.encounter.motion_options import Option
+from sgcad_core.planner.encounter.off_center import beside_middle
 from sgcad_core.planner.encounter.out_of_lanes import OUT
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.scene import Scene
@@ -48,11 +49,12 @@ _BETTER = 0.25
 
 def least_missed(found: Encounter | None, unfold: Unfold) -> WholeCourse:
     """The consequences of an encounter, or of a similar one that is nearer to the stated course."""
-    best = unfold(found, IMPACTS)
     if found is None:
-        return best
+        return unfold(found, IMPACTS)
+    found, *beside = beside_middle(found) or [found]
+    best = unfold(found, IMPACTS)
     again = bool(best.scene.again)
-    for other in islice(_like(found, again), _MOST_AGAIN if again else _MOST):
+    for other in islice(chain(beside, _like(found, again)), _MOST_AGAIN if again else _MOST):
         if best.missed < _TOLD_PART:
             break
         done = unfold(other, IMPACTS if again else [(best.scene.friction, best.scene.restitution)])
