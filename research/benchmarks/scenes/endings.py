@@ -13,7 +13,8 @@ motion is believed. What is told is what the rules read in the report. Counted o
 
 and of all vehicles that touch something:
 
-- *crawls*: more than 2.5 s at a stretch in which it slows by less than 1.3 m/s2 and does not stand
+- *crawls*: more than 2.5 s at a stretch in which it slows by less than 1.3 m/s2 (half of the friction where that is
+  less: on ice) and does not stand
 - *bends*: the way turns by more than 60 degrees between two contacts, or behind the last one
 - *dead stops*: from more than 5 m/s it stands within 0.2 s and keeps its heading, at a thing that is no wall and no
   vehicle
@@ -37,11 +38,11 @@ from sgcad_core.geometry.plane import Floats, wrap_angle
 from sgcad_core.kinds import actor_kind
 from sgcad_core.metrics.labels.motion_label_match import Path as Way
 from sgcad_core.metrics.labels.observed_crash import Crash
-from sgcad_core.metrics.rest_error import SPINS_RAD, rest_errors
+from sgcad_core.metrics.rest_error import SPINS_RAD, near_m, rest_errors
+from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.records.course import CourseTold
 
 STEP_S = 0.05
-DISTANCE_SHARE, DISTANCE_M = 0.30, 1.0
 SPIN_SHARE, SPIN_DEG = 0.25, 30.0
 CRAWLS_MPS2, CRAWLS_S = 1.3, 2.5
 BENDS_DEG = 60.0
@@ -59,7 +60,7 @@ HEAD = "| config | cases | vehicles | " + " | ".join((*TOLD, *FAULTS)) + " |"
 
 
 class Ended(NamedTuple):
-    """One vehicle that touches something: (n, 3) poses 0.05 s apart, the samples of its touches, and what it touches."""
+    """One vehicle that touches something: (n, 3) poses 0.05 s apart, the samples of its touches, what it touches."""
 
     pose: Floats
     hits: tuple[int, ...]
@@ -81,12 +82,11 @@ class Ended(NamedTuple):
         found: Floats = np.hypot(*np.diff(self.pose[:, :2], axis=0).T) / STEP_S
         return found
 
-    @property
-    def crawls_s(self) -> float:
-        """The longest time at a stretch in which it hardly slows, and moves."""
+    def crawls_s(self, least_mps2: float = CRAWLS_MPS2) -> float:
+        """The longest time at a stretch in which it slows by less, and moves."""
         speed = self.speed[self.hits[0] + _BLOW :]
         rate = (speed[:-_RATE] - speed[_RATE:]) / (_RATE * STEP_S)
-        slow = (rate < CRAWLS_MPS2) & (speed[:-_RATE] > _STANDS_MPS) & (speed[_RATE:] > 0.0)
+        slow = (rate < least_mps2) & (speed[:-_RATE] > _STANDS_MPS) & (speed[_RATE:] > 0.0)
         ends = np.flatnonzero(np.diff(np.concatenate(([0], slow.astype(int), [0]))))
         return float((ends[1::2] - ends[::2]).max(initial=0)) * STEP_S
 
@@ -140,11 +140,12 @@ def told_parts(one: Ended, told: CourseTold, crash: Crash) -> Iterator[Seen]:
         side = f", {math.degrees(errors.side_rad[0]):.0f} degrees" if errors.side_rad is not None else ""
         yield Seen("zone and side", met, f"{rest.where} {rest.side or ''}: off by {errors.where_m[0]:.1f} m{side}")
     if errors.facing_rad is not None and not told.rolls:
-        yield Seen("facing", bool(errors.facing_rad[0] <= 1e-9), f"off by {math.degrees(errors.facing_rad[0]) + 20:.0f}")
+        yield Seen(
+            "facing", bool(errors.facing_rad[0] <= 1e-9), f"off by {math.degrees(errors.facing_rad[0]) + 20:.0f}"
+        )
     if rest.distance_m is not None:
         off = abs(one.distance_m - rest.distance_m)
-        met = off <= max(DISTANCE_SHARE * rest.distance_m, DISTANCE_M)
-        yield Seen("distance", met, f"{one.distance_m:.1f} m, told {rest.distance_m:.1f}")
+        yield Seen("distance", off <= near_m(rest.distance_m), f"{one.distance_m:.1f} m, told {rest.distance_m:.1f}")
     if (told.spin or told.spin_deg) and not told.rolls:
         way = {"counterclockwise": 1.0, "clockwise": -1.0}.get(told.spin or "", math.copysign(1.0, one.turned_deg))
         turned = way * one.turned_deg
@@ -154,13 +155,21 @@ def told_parts(one: Ended, told: CourseTold, crash: Crash) -> Iterator[Seen]:
         yield Seen("spin", met, f"{turned:.0f} degrees {told.spin or 'either way'}, told {told.spin_deg or 'none'}")
 
 
-def faults(one: Ended, narrow: frozenset[str], *, rolls: bool = False) -> Iterator[str]:
-    """What no body does, by its name in `FAULTS`. `narrow`: things that are no walls."""
-    if one.crawls_s > CRAWLS_S and not rolls:
+class Place(NamedTuple):
+    """What vehicles come to rest on and touch: things that are no walls, and the least deceleration that is no crawl."""
+
+    crash: Crash
+    narrow: frozenset[str]
+    least_mps2: float = CRAWLS_MPS2
+
+
+def faults(one: Ended, at: Place, *, rolls: bool = False) -> Iterator[str]:
+    """What no body does, by its name in `FAULTS`."""
+    if one.crawls_s(at.least_mps2) > CRAWLS_S and not rolls:
         yield "crawls"
     if one.bends_deg > BENDS_DEG:
         yield "bends"
-    if any(other in narrow and one.stops_dead(hit) for hit, other in zip(one.hits, one.others, strict=True)):
+    if any(other in at.narrow and one.stops_dead(hit) for hit, other in zip(one.hits, one.others, strict=True)):
         yield "dead stops"
 
 
@@ -176,19 +185,19 @@ def count(folder: Path, figures: Figures) -> None:
     narrow = frozenset(
         a.id for a in run.actors.values() if actor_kind(a.type).thing and max(sizes[a.id]) < _WALL_M
     )  # fmt: skip
+    at = Place(crash, narrow, min(CRAWLS_MPS2, DRIVING.sliding_mps2(run.reading.crash.surface) / 2))
     for actor, one in endings(crash).items():
         if actor_kind(run.actors[actor].type).wheeled:
-            _vehicle(f"{folder.name} {actor}", one, run.reading.crash.courses.get(actor, CourseTold()), (crash, narrow), figures)
+            told = run.reading.crash.courses.get(actor, CourseTold())
+            judge_ending(f"{folder.name} {actor}", one, told, at, figures)
 
 
-def _vehicle(
-    named: str, one: Ended, told: CourseTold, at: tuple[Crash, frozenset[str]], figures: Figures
-) -> None:  # fmt: skip
-    crash, narrow = at
-    for seen in told_parts(one, told, crash):
+def judge_ending(named: str, one: Ended, told: CourseTold, at: Place, figures: Figures) -> None:
+    """Add one vehicle to the counts."""
+    for seen in told_parts(one, told, at.crash):
         figures.judge(seen.part, seen.met, f"{named}: {seen.words}")
-    found = set(faults(one, narrow, rolls=told.rolls))
-    words = {"crawls": f"{one.crawls_s:.1f} s", "bends": f"{one.bends_deg:.0f} degrees"}
+    found = set(faults(one, at, rolls=told.rolls))
+    words = {"crawls": f"{one.crawls_s(at.least_mps2):.1f} s", "bends": f"{one.bends_deg:.0f} degrees"}
     for fault in FAULTS:
         figures.judge(fault, fault not in found, f"{named}: {words.get(fault, '/'.join(one.others))}")
 

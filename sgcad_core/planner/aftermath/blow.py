@@ -23,10 +23,10 @@ class Blow(NamedTuple):
     second: Velocity
 
 
-def blow(first: Body, second: Body, at: Point, normal: Point, restitution: float, friction: float) -> Blow:
-    """One impulse on two bodies that are as they come to touch; both stay as they are."""
-    one, other = replace(first), replace(second)
-    collide(one, other, at, normal, restitution, friction)
+def blow(bodies: tuple[Body, Body], touch: tuple[Point, Point], restitution: float, friction: float) -> Blow:
+    """One impulse on two bodies that are as they come to touch; both stay as they are. `touch`: place and normal."""
+    one, other = replace(bodies[0]), replace(bodies[1])
+    collide(one, other, *touch, restitution, friction)
     return Blow(_velocity(one), _velocity(other))
 
 

@@ -26,7 +26,7 @@ _LEAST_MPS2 = 1.4
 """A vehicle that slows less than this crawls, but on ice: there half of the friction is the least."""
 _SLOW_MPS = 4.0
 """A slower vehicle has no driver any more who lets it roll: it would crawl for seconds."""
-_STRAY_RAD, _STRAYS = math.radians(55.0), 2.5
+_STRAY_RAD, _STRAYS = math.radians(48.0), 2.5
 """A way that turns more than this is driven in a loop, and the cost of it and of each as much again: more than two
 missed parts of what is told."""
 _BENDS_PER_M = (0.0, 0.015, -0.015, 0.03, -0.03, 0.06, -0.06, 0.1, -0.1, 0.15, -0.15)
@@ -40,7 +40,7 @@ _DRAGS = (0.0, 0.25, -0.25, 0.55, -0.55, 1.0, -1.0)
 _DRAG_LEVER_PER_M = 0.2
 """That moment per m/s2 of braking: half of it acts at half of the track, over the squared radius of gyration of a
 car."""
-_DRIVES_ON_S, _DRIVES_ON_PER_M = (1.0, 2.2), 0.06
+_DRIVES_ON_S, _DRIVES_ON_PER_M = (1.0, 1.8), 0.06
 """Time for which an able driver goes on before braking, with freely rolling wheels and in no tighter bend: to the
 shoulder, out of the junction."""
 _BEFORE_IT_ROLLS_PER_M = 0.03
@@ -178,7 +178,7 @@ def all_runs(from_s: float, grip_mps2: float, mps: float, *, on_wheels: bool = T
     least = min(_LEAST_MPS2, grip_mps2 / 2)
     brakes = [max(share * grip_mps2, least) for share in shares]
     ways = [RunOut(from_s, mps2, bend, turning) for mps2, bend, turning in product(brakes, bends, _TURNING)]
-    slides = [max(share * grip_mps2, least) for share in _SLIDES_SHARE]
+    slides = [max(share * grip_mps2, least) for share in _SLIDES_SHARE if mps > _SLOW_MPS or share >= shares[0]]
     on_wheels = on_wheels and mps > _SLOW_MPS
     gentle = [way for way in ways if abs(way.bend_per_m) <= _DRIVES_ON_PER_M and way.turning == _TURNING[0]]
     ways += [
@@ -192,7 +192,10 @@ def oddities(runs: Sequence[RunOut], grip: float, usual_share: float) -> Floats:
     """Small costs of departures from straight braking: of two equal run-outs the plainer one is taken."""
     return UNUSUAL * np.array(
         [
-            abs(r.along_mps2 / grip - usual_share) + 4 * abs(r.bend_per_m) + (1 - r.turning) / 2 + r.rolls_s / 2
+            abs(r.along_mps2 / grip - usual_share)
+            + 4 * abs(r.bend_per_m)
+            + (1 - r.turning) / 2
+            + r.rolls_s / 2
             + abs(r.yaws_radps2) / 2
             for r in runs
         ]

@@ -22,6 +22,7 @@ from sgcad_core.planner.aftermath.wreck_bodies import (
     Separation,
     Touch,
     center_of,
+    fastest_closing,
     first_sample,
     key_of,
     last_move,
@@ -60,8 +61,8 @@ of a file is only 0.11 m further."""
 _DEEPEST_M = 0.03
 """Deeper overlaps are parted at once."""
 _ROUNDS, _ROUNDS_OF_MANY = 6, 60
-"""Rounds of impulses over all touching pairs in one step: a body between two that are a hundred times as heavy gives
-way to both only after many; after six a man between two trucks overlapped one of them by 0.17 m."""
+"""Rounds of impulses over all touching pairs in one step: a body between two that are much heavier gives way to both
+only after many; after six a man between two trucks overlapped one of them by 0.17 m."""
 _LEAST_LEFT_S, _SHORTEST_LEFT_S = 0.1, 1e-3
 _FASTER_MPS = 4.0
 """Gain in speed within a sample for which the room of `may_meet` (0.5 m) suffices."""
@@ -87,7 +88,7 @@ class Wreck:
     gone: set[tuple[str, str]] = field(default_factory=set)
     """Pairs of which one gave way to the other."""
     blows: dict[tuple[str, str], Blow] = field(default_factory=dict)
-    """What pairs that still hold each other lack of the velocities with which they part."""
+    """What pairs that hold each other lack of the velocities with which they part."""
     now: float = 0.0
 
     def __post_init__(self) -> None:
@@ -122,7 +123,6 @@ class Wreck:
         latest = max(self.touches.values(), default=0.0)
         return self.now - latest > _TOLD_HELD_S + STEP_S and all(m.body.stands for m in self.movers)
 
-    # -------------------------------------------------------------- one sample of the clock
     def _sample(self, k: int, pairs: Sequence[Pair]) -> None:
         for m in self.movers:
             if not m.free:
@@ -142,10 +142,8 @@ class Wreck:
         self._show(near, k)
 
     def _near(self, pairs: Sequence[Pair]) -> tuple[list[Pair], list[float]]:
-        """Pairs that can meet within a sample, and the speeds of the movable bodies up to which this holds.
-
-        A light body gets faster than both when a heavy one strikes it, and may reach bodies that were out of reach.
-        """
+        """Pairs that can meet within a sample, and the speeds of the movable bodies up to which this holds: a light
+        body gets faster than both when a heavy one strikes it, and may reach what was out of reach."""
         left = [pair for pair in pairs if key_of(*pair) not in self.gone] if self.gone else pairs
         return [pair for pair in left if may_meet(*pair)], [m.body.speed + _FASTER_MPS for m in self._movable]
 
@@ -169,11 +167,9 @@ class Wreck:
         """The longest step after which no pair has sunk deeper than it may; `gaps`: how far each is apart."""
         longest = _LONGEST_S if self.hitches else STEP_S
         for (a, b), (gap, normal) in zip(near, gaps, strict=True):
-            one, other = a.body, b.body
             if gap < _NEAR_M and longest > _LONGEST_S:
                 longest = _LONGEST_S
-            closing = (one.vx - other.vx) * normal[0] + (one.vy - other.vy) * normal[1]
-            closing += abs(one.spin) * one.radius + abs(other.spin) * other.radius
+            closing = fastest_closing(a.body, b.body, normal)
             if closing > 0:
                 room = gap + 1.2 * SEEN_M if key_of(a, b) not in self.touches else max(gap, 0.0) + 0.3 * SEEN_M
                 longest = min(longest, max(room / closing, _SHORTEST_S))
@@ -189,7 +185,6 @@ class Wreck:
             if m.free:
                 apply_friction(one, m.drag, step, left, m.run_at(self.now), self.now)
 
-    # -------------------------------------------------------------- touches
     def _resolve(self, near: Sequence[Pair], sample: int) -> Sequence[Separation] | None:
         """Applies all touches at one time. Returns the separation of each pair; None where bodies were moved."""
         self._let_part(sample)
@@ -198,7 +193,11 @@ class Wreck:
         if not touching and not self.hitches:
             return gaps
         corners = [touch_points(a.body, b.body) for a, b, _ in touching]
-        wanted = self._blow(touching, corners)
+        new = [] if self.hitches or len(touching) > 1 else [t for t in touching if self._is_new(*t[:2])]
+        wanted = [
+            blow((a.body, b.body), (center_of(corners[0]), seen.normal), self.restitution, self.friction)
+            for a, b, seen in new
+        ]
         for (a, b, seen), points in zip(touching, corners, strict=True):
             at = center_of(points)
             collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample), self.friction)
@@ -215,28 +214,19 @@ class Wreck:
         for (a, b, seen), points in zip(touching, corners, strict=True):
             self._keep_seen(a, b, seen, points, sample)
             parted |= self._part(a, b, seen)
-        if wanted is not None:
-            a, b, _ = touching[0]
-            self.blows[key_of(a, b)] = lacking(wanted, a.body, b.body)
+        self.blows |= {key_of(a, b): lacking(w, a.body, b.body) for (a, b, _), w in zip(new, wanted, strict=True)}
         for hitch in self.hitches:
             self._joined(hitch, draw_together)
         return None if parted or self.hitches else gaps
 
-    def _blow(self, touching: Sequence[tuple[Mover, Mover, Separation]], corners: list[list[Point]]) -> Blow | None:
-        """How the two of a new touch will part; None of an old one, and where more bodies have a part in it."""
-        if len(touching) != 1:
-            return None
-        a, b, seen = touching[0]
-        coupled = {name for hitch in self.hitches for name in (hitch.first, hitch.second)}
-        if self.now - self.touches[key_of(a, b)] > 1e-9 or a.gives_way or b.gives_way or {a.name, b.name} & coupled:
-            return None
-        return blow(a.body, b.body, center_of(corners[0]), seen.normal, self.restitution, self.friction)
+    def _is_new(self, a: Mover, b: Mover) -> bool:
+        """Whether two bodies come to touch, and neither gives way."""
+        return self.now - self.touches[key_of(a, b)] <= 1e-9 and not (a.gives_way or b.gives_way)
 
     def _let_part(self, sample: int) -> None:
         """Lets bodies part that no longer hold each other."""
         for key in list(self.blows):
-            a, b = (self.named[name] for name in key)
-            if self._held_s(a, b, sample) <= 0.0:
+            if self._held_s(a := self.named[key[0]], b := self.named[key[1]], sample) <= 0.0:
                 part(self.blows.pop(key), a.body, b.body)
 
     def _joined(self, hitch: Hitch, act: Callable[[Hitch, Body, Body], bool]) -> bool:

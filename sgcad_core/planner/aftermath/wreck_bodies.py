@@ -168,6 +168,12 @@ def separation(a: Body, b: Body) -> Separation:
     return Separation(gap, (x, y) if way >= 0 else (-x, -y))
 
 
+def fastest_closing(one: Body, other: Body, normal: Point) -> float:
+    """The speed at which any points of two bodies can come together along a normal (from the first), m/s."""
+    closing = (one.vx - other.vx) * normal[0] + (one.vy - other.vy) * normal[1]
+    return closing + abs(one.spin) * one.radius + abs(other.spin) * other.radius
+
+
 def touch_points(a: Body, b: Body) -> list[Point]:
     """The corners of either box in (or within centimetres of) the other; the point midway where there are none."""
     one, two = _frame(a), _frame(b)

@@ -22,7 +22,7 @@ NARROW_M = 1.2
 """A wider thing has no side of its own."""
 SHARES = (0.45, 0.72, 0.25)
 """Of half the side: how far beside its middle the thing stands where the report tells a rotation or a facing."""
-USUAL = 0.35
+USUAL = 0.5
 """The same where it tells neither."""
 
 
@@ -64,4 +64,6 @@ def _moved(thing: Motion, at_s: float, striking: tuple[Floats, Size], share: flo
     along = np.array([-math.sin(out), math.cos(out)])
     half = size[1 - side % 2] / 2
     is_at = float((center[0] - by[:2]) @ along)
-    return replace(thing, path=thing.path.displaced(np.repeat([(share * half - is_at) * along], len(thing.path.points), 0)))
+    return replace(
+        thing, path=thing.path.displaced(np.repeat([(share * half - is_at) * along], len(thing.path.points), 0))
+    )

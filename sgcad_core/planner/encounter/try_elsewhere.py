@@ -12,6 +12,7 @@ from itertools import chain, islice, zip_longest
 from typing import NamedTuple
 
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact
+from sgcad_core.planner.encounter.blow_turns import misturned, turns_told
 from sgcad_core.planner.encounter.encounter_search import along_sides
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.off_center import beside_middle
@@ -41,6 +42,8 @@ _PLACES = 5
 _MOST, _MOST_AGAIN = 5, 10
 """Encounters tried: each costs about as much as the first. More where the two touch a second time, since a tail hits
 the other only for some places of the impact."""
+_RANKED = 15
+"""Encounters of which those are tried first that turn the vehicles as told."""
 _WORSE = 1.5
 """By which another place may be worse: less than a maneuver or a departure that does not show there."""
 _BETTER = 0.25
@@ -64,13 +67,13 @@ def least_missed(found: Encounter | None, unfold: Unfold) -> WholeCourse:
 
 
 def _like(found: Encounter, again: bool) -> Iterator[Encounter]:
-    """Other places along the stated sides, at the given speeds and at others in turn; for a second contact (`again`) at
-    the given ones first."""
+    """Other places along the stated sides, at the given speeds and at others in turn, those first that turn the
+    vehicles as told; for a second contact (`again`) at the given speeds first."""
     at_speeds = [_along(found, speeds) for speeds in _SPEEDS]
     if again:
         yield from at_speeds.pop(0)
-    for row in zip_longest(*at_speeds):
-        yield from (other for other in row if other)
+    others = (other for row in zip_longest(*at_speeds) for other in row if other)
+    yield from sorted(islice(others, _RANKED), key=misturned) if turns_told(found) else others
 
 
 def _along(found: Encounter, factors: tuple[float, float]) -> Iterator[Encounter]:
