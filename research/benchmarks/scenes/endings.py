@@ -156,7 +156,7 @@ def told_parts(one: Ended, told: CourseTold, crash: Crash) -> Iterator[Seen]:
 
 
 class Place(NamedTuple):
-    """What vehicles come to rest on and touch: things that are no walls, and the least deceleration that is no crawl."""
+    """Where vehicles come to rest: things that are no walls, and the least deceleration that is no crawl."""
 
     crash: Crash
     narrow: frozenset[str]

@@ -213,7 +213,8 @@ class RestFit:
 
     def _way_m(self, name: str, ends: Floats) -> Floats:
         """(n,) metres from the place of a vehicle at the first contact to (n, 3) last poses."""
-        return np.hypot(*(ends[:, :2] - self.scene.tracks[name].driven[self.scene.contact, :2]).T)
+        way: Floats = np.hypot(*(ends[:, :2] - self.scene.tracks[name].driven[self.scene.contact, :2]).T)
+        return way
 
     def _unspun(self, name: str, course: CourseTold, ends: Floats) -> Floats:
         """(n,) costs of rotation otherwise than stated: by other degrees, or in the other sense."""
