@@ -19,7 +19,7 @@ from sgcad_core.metrics.labels.course_label_match import vehicle_marks
 from sgcad_core.metrics.labels.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
 from sgcad_core.metrics.labels.observed_crash import VehicleMotion
 from sgcad_core.metrics.lane_places import lane_steps
-from sgcad_core.metrics.rest_error import attitude_of
+from sgcad_core.metrics.rest_error import attitude_of, near_m
 from sgcad_core.metrics.road_departure import hand_of, left_road
 from sgcad_core.metrics.told_lanes import LANE_WORDS, TURN_LANES, ToldLane, position, told_lane
 from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
@@ -140,6 +140,15 @@ def _side(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     return None if mark is None else Comparison(mark >= 1, why="it comes to rest on another side")
 
 
+def _distance(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
+    """How far from its place at its first contact it comes to rest."""
+    if not isinstance(value, int | float):
+        return None
+    one = VehicleMotion(made.crash, who)
+    seen = math.dist(one.path.pose[one.hit, :2], one.path.pose[-1, :2])
+    return Comparison(abs(seen - value) <= near_m(value), round(seen, 1), f"it comes to rest {seen:.0f} m from there")
+
+
 def _attitude(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     seen = attitude_of(float(made.tracks[who].rolls[-1]))
     return Comparison(seen == value, seen, f"it comes to rest on its {_LIES[seen]}")
@@ -203,5 +212,5 @@ def _exit(made: ExecutedCase, who: str) -> str | None:
 _JUDGES: dict[str, Judge] = {
     "heading": _heading, "lane": _lane, "lane_word": _lane, "spin_deg": _spin_deg, "rest.side": _side,
     "rest.attitude": _attitude, "from_stop": _from_rest, "rolls": _rolls, "departs": _departs, "origin": _joins(_start),
-    "target": _joins(_exit),
+    "target": _joins(_exit), "rest.distance_m": _distance,
 }  # fmt: skip

@@ -26,10 +26,12 @@ SIDE_RAD = math.radians(68.0)
 right."""
 SPINS_RAD = math.radians(8.0)
 """Rotation after its first contact from which a vehicle spins."""
-SHOULDER_M = (-0.6, 4.0)
+SHOULDER_M = (0.0, 4.0)
 """Distances beyond the edge of the nearest lane of a box center on a shoulder."""
 OFF_M = 0.0
 """Off the road from here on: the center is beyond the edge."""
+_NEAR_SHARE, _NEAR_M = 0.3, 1.0
+"""A distance is right within this share of it, or so many metres."""
 _JUNCTION_M = 1.5
 """Distance out of the area of a junction at which a center still counts as in the intersection."""
 _CORNER_M = 45.0
@@ -62,6 +64,11 @@ def rest_errors(told: RestTold, poses: Floats, came_rad: float, surface: RoadSur
         np.where(off < SHOULDER_M[0], math.pi, _beside(told.side, poses, bearing, came_rad, surface)) - SIDE_RAD
     )  # fmt: skip
     return RestErrors(facing, where, side)
+
+
+def near_m(distance_m: float) -> float:
+    """By how much a distance may differ from one that is told."""
+    return max(_NEAR_SHARE * distance_m, _NEAR_M)
 
 
 def attitude_of(roll_rad: float) -> Attitude:

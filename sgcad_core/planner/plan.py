@@ -46,6 +46,8 @@ from sgcad_core.roads.surface import road_surface
 _FURTHER_S, _EACH_S, _MOST_S = 3.0, 0.8, 7.0
 """Additional time after the first contact where an actor goes on far, for each contact from the third on, and at
 most."""
+_TOLD_S_PER_M = 0.14
+"""Time for a told distance to the rest: slowed evenly from 14 m/s."""
 _MANEUVER_MISSED = 3.0
 """Cost of a stated maneuver that is not visible: more than any two parts of the course after the contact."""
 WAITS_S = 1.5
@@ -244,12 +246,12 @@ class _Cast:
             self.missed += len(unseen)
 
     def _runs_on_s(self) -> float:
-        """Additional time where an actor goes on far after the first contact: off the road, or into further
-        contacts."""
-        afar = any(course.rest.where in ("off_road", "shoulder", "median") for course in self.told.values())
-        if not afar and len(self.contacts) < 2:
-            return 0.0
-        return min(_FURTHER_S + _EACH_S * max(len(self.contacts) - 2, 0), _MOST_S)
+        """Additional time where an actor goes on far after the first contact: off the road, into further contacts."""
+        rests = [course.rest for course in self.told.values()]
+        told_s = max((rest.distance_m or 0.0 for rest in rests), default=0.0) * _TOLD_S_PER_M - AFTER_S
+        afar = len(self.contacts) > 1 or any(rest.where in ("off_road", "shoulder", "median") for rest in rests)
+        further_s = _FURTHER_S + _EACH_S * max(len(self.contacts) - 2, 0) if afar else 0.0
+        return min(max(further_s, told_s), _MOST_S)
 
     # -------------------------------------------------------------- the others
     def _couple(self, scene: Scene, actor: str, own_s: float) -> None:

@@ -34,6 +34,8 @@ class RestTold:
     attitude: Attitude | None = None
     against: str | None = None
     """What it leaned against, in the report's word."""
+    distance_m: float | None = None
+    """From the place of its first contact."""
 
     @property
     def empty(self) -> bool:

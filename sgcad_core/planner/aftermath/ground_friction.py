@@ -23,6 +23,8 @@ _STEERED_SHARE = 0.7
 """Share of the side force for a steered bend; the rest is for the slide."""
 _STEERS_MPS = 1.0
 """Slower wheels have no steering effect."""
+_TURNS_M = 1.4
+"""Mean distance of the tires from the center: what turns at 1 rad/s moves over the ground with so many m/s."""
 
 
 class Drag(NamedTuple):
@@ -44,6 +46,10 @@ class RunOut(NamedTuple):
     """Resistance to turning, as a share of that of four locked wheels."""
     rolls_s: float = 0.0
     """Time from `from_s` on for which the engine makes up for the losses of the wheels; then it brakes."""
+    slides: bool = False
+    """Whether bent or locked wheels slide: friction acts against the motion of every tire, and none steers."""
+    yaws_radps2: float = 0.0
+    """Moment of wheels that drag on one side of a body that slides, as an angular acceleration, left positive."""
 
     def along_at(self, now_s: float) -> float:
         """Deceleration along the box at a time, m/s2."""
@@ -66,6 +72,9 @@ def apply_friction(
     """
     vx, vy, spin = one.vx, one.vy, one.spin
     if vx == vy == spin == 0.0:
+        return
+    if run and run.slides:
+        _slide(one, drag, run, step, left_s)
         return
     speed = math.hypot(vx, vy)
     target = 0.0
@@ -94,6 +103,21 @@ def apply_friction(
     one.spin = target if abs(off) <= turning else spin - math.copysign(turning, off)
 
 
+def _slide(one: Body, drag: Drag, run: RunOut, step: float, left_s: float) -> None:
+    """Coulomb friction under a body that slides and turns: what turns fast is slowed less along its way, and the
+    reverse (R. M. Brach, Vehicle Accident Analysis and Reconstruction Methods, ch. 5)."""
+    speed, turns = math.hypot(one.vx, one.vy), abs(one.spin) * _TURNS_M
+    both = max(math.hypot(speed, turns), 1e-9)
+    brake = run.along_mps2 * speed / both
+    brake *= max(1.0, speed / (left_s * max(brake, 1e-6)))
+    left = 0.0 if brake * step >= speed else 1.0 - brake * step / speed
+    one.vx, one.vy = one.vx * left, one.vy * left
+    turning = max(_turning_mps2(one, drag) * run.turning * turns / both, abs(one.spin) / left_s) * step
+    one.spin = 0.0 if abs(one.spin) <= turning else one.spin - math.copysign(turning, one.spin)
+    if speed > _STEERS_MPS:
+        one.spin += run.yaws_radps2 * step
+
+
 def _steered(bend: float, speed: float, across_mps2: float) -> float:
     """The curvature that tires allow at a speed."""
     most = _STEERED_SHARE * across_mps2 / max(speed, 1.0) ** 2
@@ -119,13 +143,16 @@ def run_out_paths(
     counts = [len(ways) for ways in runs]
     state = np.repeat([_moving(one.body) for one in released], counts, axis=0).T
     turns = [_turning_mps2(one.body, drag) for one, drag in zip(released, drags, strict=True)]
-    way, bend, share, rolls = np.array([run[1:] for ways in runs for run in ways]).T
+    way, bend, share, rolls, slides, yaws = np.array([run[1:] for ways in runs for run in ways], dtype=float).T
     wheels = bend, np.repeat(turns, counts) * share, np.repeat([drag.across for drag in drags], counts)
-    at_s = released[0].at_s
+    at_s, sliding = released[0].at_s, np.flatnonzero(slides)
     found = np.empty((max(round((end_s - at_s) / step), 1), len(way), 3))
     for k in range(len(found)):
         left_s = max(end_s - at_s - k * step, 0.1)
+        before = state[:, sliding]
         state = _run_on(state, np.where(k * step < rolls, 0.0, way), wheels, left_s, step)
+        if len(sliding):
+            state[:, sliding] = _slide_on(before, way[sliding], wheels[1][sliding], yaws[sliding], (left_s, step))
         found[k] = state[:3].T
     return np.split(found, np.cumsum(counts)[:-1], axis=1)
 
@@ -157,3 +184,19 @@ def _run_on(state: Floats, way: Floats, wheels: tuple[Floats, ...], left_s: floa
     turned = np.where(np.abs(off) <= by, target, spin - np.copysign(by, off))
     slowed = (np.where(stands, 0.0, vx - ahead * c + left * s), np.where(stands, 0.0, vy - ahead * s - left * c))
     return np.concatenate((moved, (*slowed, turned)))
+
+
+def _slide_on(state: Floats, way: Floats, turning: Floats, yaws: Floats, times_s: tuple[float, float]) -> Floats:
+    """(6, n) as `_run_on`, of bodies that slide (`_slide`); `times_s`: what is left, and the step."""
+    left_s, step = times_s
+    moved = state[:3] + state[3:] * step
+    vx, vy, spin = state[3:]
+    speed, turns = np.hypot(vx, vy), np.abs(spin) * _TURNS_M
+    both = np.maximum(np.hypot(speed, turns), 1e-9)
+    brake = way * speed / both
+    brake = brake * np.maximum(1.0, speed / (left_s * np.maximum(brake, 1e-6)))
+    left = np.where(brake * step >= speed, 0.0, 1.0 - brake * step / np.maximum(speed, 1e-9))
+    by = np.maximum(turning * turns / both, np.abs(spin) / left_s) * step
+    turned = np.where(np.abs(spin) <= by, 0.0, spin - np.copysign(by, spin))
+    turned = turned + np.where(speed > _STEERS_MPS, yaws * step, 0.0)
+    return np.concatenate((moved, (vx * left, vy * left, turned)))

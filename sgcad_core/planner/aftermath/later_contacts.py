@@ -14,10 +14,11 @@ from sgcad_core.planner.aftermath.rest_candidates import MISSED
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit, leaving_the_road
 from sgcad_core.planner.aftermath.struck_objects import Strike, leave_beside, place_thing
 from sgcad_core.planner.aftermath.told_order import ToldOrder, pair_of
+from sgcad_core.planner.encounter.off_center import NARROW_M, SHARES, USUAL
 from sgcad_core.planner.later_courses import runs_on, with_run
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold
-from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
 from sgcad_core.roads.surface import RoadSurface
 
 
@@ -62,8 +63,8 @@ def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Stri
         if contact.struck in things and contact.striker not in things:
             goes_on = any(c.striker == contact.striker for c in contacts[number + 1 :])
             before = sum(strike.by == contact.striker for strike in found)
-            aside = _ASIDE * (-1) ** before if goes_on or before else 0.0
-            found.append(Strike(actors[contact.struck], contact.striker, contact.striker_area, goes_on, aside))
+            asides = (_ASIDE * (-1) ** before,) if goes_on or before else (0.0,)
+            found.append(Strike(actors[contact.struck], contact.striker, contact.striker_area, goes_on, asides))
             things.remove(contact.struck)
     return found
 
@@ -86,6 +87,18 @@ def expect_later_contacts(scene: Scene, contacts: Sequence[Contact]) -> None:
     first = {pair_of(contact) for contact in contacts[:1]}
     further = frozenset(pair_of(contact) for contact in contacts[1:])
     scene.again, scene.told = further & first, further - first
+
+
+def _off_middle(strike: Strike, course: CourseTold) -> Strike:
+    """A narrow thing that ends the way of its vehicle, beside the middle of the side that strikes it, so that the blow
+    turns the vehicle as told."""
+    if strike.asides != (0.0,) or max(size_m(strike.thing)) > NARROW_M:
+        return strike
+    if course.spin:
+        sign = 1.0 if course.spin == "counterclockwise" else -1.0
+        return replace(strike, asides=tuple(sign * share / 2 for share in SHARES))
+    both = course.spin_deg or course.rest.facing_deg is not None
+    return replace(strike, asides=(-USUAL / 2, USUAL / 2) if both else (-USUAL / 2,))
 
 
 def _on_the_way(told: Courses, rolling: frozenset[str]) -> Courses:
@@ -124,19 +137,21 @@ class Ending:
         told = {name: courses[name] for name in scene.tracks if name in courses}
         passed: list[tuple[Strike, int]] = []
         if not told and not rolling and not scene.again:
-            notes = list(self._then(surface, lambda: 0.0, passed))
+            notes = list(self._then(courses, surface, lambda: 0.0, passed))
             return Ended(tuple(notes), MISSED * len(notes), tuple(passed))
         for name in rolling:
             told[name] = leaving_the_road(told.get(name, CourseTold()))
         RestFit(scene, _on_the_way(told, rolling), surface, rolling, impacts, self.order).fit()
         as_told = RestFit(scene, told, surface, rolling, impacts, self.order)
-        notes = list(self._then(surface, as_told.cost, passed))
+        notes = list(self._then(courses, surface, as_told.cost, passed))
         told = {name: courses[name] for name in scene.tracks if name in courses} | told
         rests = RestFit(scene, told, surface, rolling, impacts, self.order)
         rests.finish()
         return Ended((*notes, *rests.missed()), rests.cost() + MISSED * len(notes), tuple(passed))
 
-    def _then(self, surface: RoadSurface, cost: Callable[[], float], passed: list[tuple[Strike, int]]) -> Iterator[str]:
+    def _then(
+        self, courses: Courses, surface: RoadSurface, cost: Callable[[], float], passed: list[tuple[Strike, int]]
+    ) -> Iterator[str]:
         """The contacts from the first thing on the way on, in order; notes on those that do not come about.
 
         `passed` gets the strikes of vehicles that were not touched: they drive on, and are placed later.
@@ -146,6 +161,7 @@ class Ending:
             if strike is None or contact.struck in self.scene.tracks:
                 yield from self._meet(contact, more=more > 0)
             elif any(strike.by in (touch.first, touch.second) for touch in self.scene.touches):
+                strike = _off_middle(strike, courses.get(strike.by, CourseTold()))
                 yield from self._strike(strike, surface, cost, more)
             else:
                 passed.append((strike, self.order.after))

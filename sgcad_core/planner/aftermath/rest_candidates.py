@@ -20,17 +20,27 @@ from sgcad_core.planner.aftermath.ground_friction import RunOut
 
 Ints = NDArray[np.int_]
 
-_BRAKES_SHARE, _SLOW_SHARE = (0.05, 0.12, 0.22, 0.36, 0.58, 0.92), (0.36, 0.58, 0.92)
+_BRAKES_SHARE, _SLOW_SHARE = (0.2, 0.36, 0.58, 0.92), (0.36, 0.58, 0.92)
 """Share of the friction: from rolling on with bent wheels to four locked ones; and of a slow one, which stops."""
+_LEAST_MPS2 = 1.4
+"""A vehicle that slows less than this crawls, but on ice: there half of the friction is the least."""
 _SLOW_MPS = 4.0
 """A slower vehicle has no driver any more who lets it roll: it would crawl for seconds."""
-_STRAY_RAD, _STRAYS = math.radians(60.0), 0.6
-"""A way that turns more than this is driven in a loop, and the cost of each as much again."""
+_STRAY_RAD, _STRAYS = math.radians(48.0), 2.5
+"""A way that turns more than this is driven in a loop, and the cost of it and of each as much again: more than two
+missed parts of what is told."""
 _BENDS_PER_M = (0.0, 0.015, -0.015, 0.03, -0.03, 0.06, -0.06, 0.1, -0.1, 0.15, -0.15)
 """Down to a turning circle of 13 m."""
 _TURNING = (1.0, 0.8, 0.6, 0.45, 0.35)
 """Resistance to turning: rolling tires give less than locked ones."""
-_DRIVES_ON_S, _DRIVES_ON_PER_M = (1.5, 4.0), 0.06
+_SLIDES_SHARE, _SLIDES_TURNING = (0.25, 0.4, 0.6, 0.92), (1.0, 0.6, 0.35)
+"""Of a body that slides on bent and locked wheels: share of the friction, and resistance to turning."""
+_DRAGS = (0.0, 0.25, -0.25, 0.55, -0.55, 1.0, -1.0)
+"""Moment of wheels that drag on one side, as a share of what two that are locked there have."""
+_DRAG_LEVER_PER_M = 0.2
+"""That moment per m/s2 of braking: half of it acts at half of the track, over the squared radius of gyration of a
+car."""
+_DRIVES_ON_S, _DRIVES_ON_PER_M = (1.0, 1.8), 0.06
 """Time for which an able driver goes on before braking, with freely rolling wheels and in no tighter bend: to the
 shoulder, out of the junction."""
 _BEFORE_IT_ROLLS_PER_M = 0.03
@@ -165,9 +175,16 @@ def all_runs(from_s: float, grip_mps2: float, mps: float, *, on_wheels: bool = T
     """All run-outs from a speed; one not `on_wheels` does not drive on, and hardly steers before it rolls over."""
     bends = [bend for bend in _BENDS_PER_M if on_wheels or abs(bend) <= _BEFORE_IT_ROLLS_PER_M]
     shares = _BRAKES_SHARE if mps > _SLOW_MPS else _SLOW_SHARE
-    ways = [RunOut(from_s, s * grip_mps2, bend, turning) for s, bend, turning in product(shares, bends, _TURNING)]
+    least = min(_LEAST_MPS2, grip_mps2 / 2)
+    brakes = [max(share * grip_mps2, least) for share in shares]
+    ways = [RunOut(from_s, mps2, bend, turning) for mps2, bend, turning in product(brakes, bends, _TURNING)]
+    slides = [max(share * grip_mps2, least) for share in _SLIDES_SHARE if mps > _SLOW_MPS or share >= shares[0]]
     on_wheels = on_wheels and mps > _SLOW_MPS
     gentle = [way for way in ways if abs(way.bend_per_m) <= _DRIVES_ON_PER_M and way.turning == _TURNING[0]]
+    ways += [
+        RunOut(from_s, mps2, 0.0, turning, slides=True, yaws_radps2=drags * _DRAG_LEVER_PER_M * mps2)
+        for mps2, turning, drags in product(slides, _SLIDES_TURNING, _DRAGS)
+    ]
     return ways + [way._replace(rolls_s=rolls) for way in gentle for rolls in _DRIVES_ON_S if on_wheels]
 
 
@@ -175,7 +192,11 @@ def oddities(runs: Sequence[RunOut], grip: float, usual_share: float) -> Floats:
     """Small costs of departures from straight braking: of two equal run-outs the plainer one is taken."""
     return UNUSUAL * np.array(
         [
-            abs(r.along_mps2 / grip - usual_share) + 4 * abs(r.bend_per_m) + (1 - r.turning) / 2 + r.rolls_s / 2
+            abs(r.along_mps2 / grip - usual_share)
+            + 4 * abs(r.bend_per_m)
+            + (1 - r.turning) / 2
+            + r.rolls_s / 2
+            + abs(r.yaws_radps2) / 2
             for r in runs
         ]
     )
@@ -187,5 +208,5 @@ def loops(ways: Floats, step_s: float) -> Floats:
     moving = np.hypot(*moves.transpose(2, 0, 1)) > _MOVES_MPS * step_s
     way = np.unwrap(np.arctan2(moves[..., 1], moves[..., 0]), axis=0)
     turned = np.where(moving, np.abs(way - way[:1]), 0.0).max(axis=0)
-    cost: Floats = _STRAYS * np.maximum(turned / _STRAY_RAD - 1.0, 0.0)
+    cost: Floats = _STRAYS * np.where(turned > _STRAY_RAD, turned / _STRAY_RAD, 0.0)
     return cost

@@ -17,7 +17,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.metrics.rest_error import FACING_RAD, SIDE_RAD, SPINS_RAD, RestErrors, rest_errors
+from sgcad_core.metrics.rest_error import FACING_RAD, SIDE_RAD, SPINS_RAD, RestErrors, near_m, rest_errors
 from sgcad_core.planner.aftermath.ground_friction import Released, run_out_paths
 from sgcad_core.planner.aftermath.rest_candidates import (
     MISSED,
@@ -206,7 +206,15 @@ class RestFit:
         ):
             if error is not None:
                 total += _TOLD * (error > 0) + np.maximum(error + well, 0.0) / scale
+        if course.rest.distance_m is not None:
+            off = np.abs(self._way_m(name, ends) - course.rest.distance_m)
+            total += _TOLD * (off > near_m(course.rest.distance_m)) + off / course.rest.distance_m
         return total + self._unspun(name, course, ends) if course.spin else total
+
+    def _way_m(self, name: str, ends: Floats) -> Floats:
+        """(n,) metres from the place of a vehicle at the first contact to (n, 3) last poses."""
+        way: Floats = np.hypot(*(ends[:, :2] - self.scene.tracks[name].driven[self.scene.contact, :2]).T)
+        return way
 
     def _unspun(self, name: str, course: CourseTold, ends: Floats) -> Floats:
         """(n,) costs of rotation otherwise than stated: by other degrees, or in the other sense."""
@@ -230,6 +238,10 @@ class RestFit:
     def _missed(self, name: str, rest: RestTold) -> Iterator[str]:
         errors = rest_errors(rest, self.scene.tracks[name].poses[-1:], self._came_rad(name), self.surface)
         yield from (f"{name} {words}" for words in _in_words(rest, errors))
+        if rest.distance_m is not None:
+            way = float(self._way_m(name, self.scene.tracks[name].poses[-1:])[0])
+            if abs(way - rest.distance_m) > near_m(rest.distance_m):
+                yield f"{name} comes to rest {way:.0f} m from the contact (told: {rest.distance_m:.0f} m)"
 
 
 def _in_words(rest: RestTold, errors: RestErrors) -> Iterator[str]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -53,8 +53,9 @@ class Strike:
     side: Area | None
     goes_on: bool
     """Whether the same vehicle strikes something else later."""
-    aside: float = 0.0
-    """Offset to the left of the middle of the side, as a share of it: objects struck in a row stand on both sides."""
+    asides: tuple[float, ...] = (0.0,)
+    """Offsets to the left of the middle of the side to try, as shares of it: what is struck off the middle turns the
+    vehicle, to the left where it is positive; objects struck in a row stand on both sides."""
     thing_side: Area = "front"
     """The side of the object that touches."""
 
@@ -84,7 +85,7 @@ def place_thing(
     `cost`: of the rest as settled. `more`: number of contacts that follow.
     """
     best: tuple[float, Track] | None = None
-    for pose in _places(scene, strike, surface, order.after, more=more):
+    for pose in _poses(scene, strike, surface, order.after, more=more):
         track = _stand(scene, strike, pose)
         scene.settle()
         if _is_struck(scene, strike, order) and (best is None or cost() < best[0]):
@@ -97,6 +98,12 @@ def place_thing(
         order.pairs.append(frozenset((strike.by, strike.thing.id)))
     scene.settle()
     return best is not None
+
+
+def _poses(scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, more: int) -> Iterator[Floats]:
+    """The places of an object at one offset after the other."""
+    for aside in strike.asides:
+        yield from _places(scene, replace(strike, asides=(aside,)), surface, after, more=more)
 
 
 def _is_struck(scene: Scene, strike: Strike, order: ToldOrder) -> bool:
@@ -168,7 +175,7 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
         reach = track.size[number % 2] / 2 + size[0] / 2 - min(_DEPTH_M, outward * STEP_S)
         leads = outward > 0.7 * math.hypot(by[0], by[1]) / STEP_S
         rank = 0 if side == strike.side or (strike.side is None and leads) else 1 if leads else 2
-        left = strike.aside * track.size[1 - number % 2]
+        left = strike.asides[0] * track.size[1 - number % 2]
         yield rank, np.array([
             x + reach * math.cos(out) - left * math.sin(out), y + reach * math.sin(out) + left * math.cos(out), out,
         ])  # fmt: skip

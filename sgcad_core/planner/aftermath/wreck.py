@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
 
-from sgcad_core.geometry.plane import Floats, box_gaps, first_overlap
+from sgcad_core.geometry.plane import Floats
+from sgcad_core.planner.aftermath.blow import Blow, blow, lacking, part
 from sgcad_core.planner.aftermath.ground_friction import apply_friction
 from sgcad_core.planner.aftermath.hitch import Hitch, draw_together, equalize_velocities
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, slow_parting
@@ -22,9 +22,12 @@ from sgcad_core.planner.aftermath.wreck_bodies import (
     Separation,
     Touch,
     center_of,
+    fastest_closing,
+    first_sample,
     key_of,
     last_move,
     may_meet,
+    pairs_apart,
     separation,
     separations,
     set_on_script,
@@ -58,8 +61,8 @@ of a file is only 0.11 m further."""
 _DEEPEST_M = 0.03
 """Deeper overlaps are parted at once."""
 _ROUNDS, _ROUNDS_OF_MANY = 6, 60
-"""Rounds of impulses over all touching pairs in one step: a body between two that are a hundred times as heavy gives
-way to both only after many; after six a man between two trucks overlapped one of them by 0.17 m."""
+"""Rounds of impulses over all touching pairs in one step: a body between two that are much heavier gives way to both
+only after many; after six a man between two trucks overlapped one of them by 0.17 m."""
 _LEAST_LEFT_S, _SHORTEST_LEFT_S = 0.1, 1e-3
 _FASTER_MPS = 4.0
 """Gain in speed within a sample for which the room of `may_meet` (0.5 m) suffices."""
@@ -84,6 +87,8 @@ class Wreck:
     """Pairs that touched, with the time of it."""
     gone: set[tuple[str, str]] = field(default_factory=set)
     """Pairs of which one gave way to the other."""
+    blows: dict[tuple[str, str], Blow] = field(default_factory=dict)
+    """What pairs that hold each other lack of the velocities with which they part."""
     now: float = 0.0
 
     def __post_init__(self) -> None:
@@ -95,8 +100,8 @@ class Wreck:
 
         `until`: stop there; the bodies are then as they are at that sample, the poses behind it are the scripts'.
         """
-        pairs = self._pairs()
-        start = self._start(pairs)
+        pairs = pairs_apart(self.movers)
+        start = first_sample(pairs, self.count)
         poses = {m.name: m.script.copy() for m in self.movers}
         drives = {m.name: last_move(m.script) for m in self.movers}
         before, end = None, min(self.count - 1, until or self.count)
@@ -118,24 +123,6 @@ class Wreck:
         latest = max(self.touches.values(), default=0.0)
         return self.now - latest > _TOLD_HELD_S + STEP_S and all(m.body.stands for m in self.movers)
 
-    def _pairs(self) -> list[Pair]:
-        """All pairs but those that overlap from the start: parts of one thing, or scenery."""
-        found = []
-        for a, b in combinations(self.movers, 2):
-            first = box_gaps(a.script[:1], a.body.size, b.script[:1], b.body.size)[0]
-            if first > 0 and not (a.fixed and b.fixed):
-                found.append((a, b))
-        return found
-
-    def _start(self, pairs: Sequence[Pair]) -> int:
-        """The sample before the first overlap of any two scripts; the last one where there is none."""
-        first = self.count
-        for a, b in pairs:
-            hit = first_overlap(a.script, a.body.size, b.script, b.body.size)
-            first = first if hit is None else min(first, hit)
-        return max(first - 1, 0)
-
-    # -------------------------------------------------------------- one sample of the clock
     def _sample(self, k: int, pairs: Sequence[Pair]) -> None:
         for m in self.movers:
             if not m.free:
@@ -155,10 +142,8 @@ class Wreck:
         self._show(near, k)
 
     def _near(self, pairs: Sequence[Pair]) -> tuple[list[Pair], list[float]]:
-        """Pairs that can meet within a sample, and the speeds of the movable bodies up to which this holds.
-
-        A light body gets faster than both when a heavy one strikes it, and may reach bodies that were out of reach.
-        """
+        """Pairs that can meet within a sample, and the speeds of the movable bodies up to which this holds: a light
+        body gets faster than both when a heavy one strikes it, and may reach what was out of reach."""
         left = [pair for pair in pairs if key_of(*pair) not in self.gone] if self.gone else pairs
         return [pair for pair in left if may_meet(*pair)], [m.body.speed + _FASTER_MPS for m in self._movable]
 
@@ -182,11 +167,9 @@ class Wreck:
         """The longest step after which no pair has sunk deeper than it may; `gaps`: how far each is apart."""
         longest = _LONGEST_S if self.hitches else STEP_S
         for (a, b), (gap, normal) in zip(near, gaps, strict=True):
-            one, other = a.body, b.body
             if gap < _NEAR_M and longest > _LONGEST_S:
                 longest = _LONGEST_S
-            closing = (one.vx - other.vx) * normal[0] + (one.vy - other.vy) * normal[1]
-            closing += abs(one.spin) * one.radius + abs(other.spin) * other.radius
+            closing = fastest_closing(a.body, b.body, normal)
             if closing > 0:
                 room = gap + 1.2 * SEEN_M if key_of(a, b) not in self.touches else max(gap, 0.0) + 0.3 * SEEN_M
                 longest = min(longest, max(room / closing, _SHORTEST_S))
@@ -202,14 +185,19 @@ class Wreck:
             if m.free:
                 apply_friction(one, m.drag, step, left, m.run_at(self.now), self.now)
 
-    # -------------------------------------------------------------- touches
     def _resolve(self, near: Sequence[Pair], sample: int) -> Sequence[Separation] | None:
         """Applies all touches at one time. Returns the separation of each pair; None where bodies were moved."""
+        self._let_part(sample)
         gaps = separations(near)
         touching = [(a, b, seen) for (a, b), seen in zip(near, gaps, strict=True) if self._touches(a, b, seen, sample)]
         if not touching and not self.hitches:
             return gaps
         corners = [touch_points(a.body, b.body) for a, b, _ in touching]
+        new = [] if self.hitches or len(touching) > 1 else [t for t in touching if self._is_new(*t[:2])]
+        wanted = [
+            blow((a.body, b.body), (center_of(corners[0]), seen.normal), self.restitution, self.friction)
+            for a, b, seen in new
+        ]
         for (a, b, seen), points in zip(touching, corners, strict=True):
             at = center_of(points)
             collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample), self.friction)
@@ -226,9 +214,20 @@ class Wreck:
         for (a, b, seen), points in zip(touching, corners, strict=True):
             self._keep_seen(a, b, seen, points, sample)
             parted |= self._part(a, b, seen)
+        self.blows |= {key_of(a, b): lacking(w, a.body, b.body) for (a, b, _), w in zip(new, wanted, strict=True)}
         for hitch in self.hitches:
             self._joined(hitch, draw_together)
         return None if parted or self.hitches else gaps
+
+    def _is_new(self, a: Mover, b: Mover) -> bool:
+        """Whether two bodies come to touch, and neither gives way."""
+        return self.now - self.touches[key_of(a, b)] <= 1e-9 and not (a.gives_way or b.gives_way)
+
+    def _let_part(self, sample: int) -> None:
+        """Lets bodies part that no longer hold each other."""
+        for key in list(self.blows):
+            if self._held_s(a := self.named[key[0]], b := self.named[key[1]], sample) <= 0.0:
+                part(self.blows.pop(key), a.body, b.body)
 
     def _joined(self, hitch: Hitch, act: Callable[[Hitch, Body, Body], bool]) -> bool:
         """Applies a hitch to its two bodies, once both are free."""

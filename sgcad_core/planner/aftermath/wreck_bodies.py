@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
-from sgcad_core.geometry.plane import Floats
+from sgcad_core.geometry.plane import Floats, box_gaps, first_overlap
 from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
 from sgcad_core.planner.aftermath.impact import Body, Point
 from sgcad_core.planner.motion import STEP_S
@@ -103,6 +104,25 @@ def last_move(script: Floats) -> int:
     return int(moves[-1]) + 1 if len(moves) else 0
 
 
+def pairs_apart(movers: Sequence[Mover]) -> list[Pair]:
+    """All pairs but those that overlap from the start: parts of one thing, or scenery."""
+    found = []
+    for a, b in combinations(movers, 2):
+        first = box_gaps(a.script[:1], a.body.size, b.script[:1], b.body.size)[0]
+        if first > 0 and not (a.fixed and b.fixed):
+            found.append((a, b))
+    return found
+
+
+def first_sample(pairs: Sequence[Pair], count: int) -> int:
+    """The sample before the first overlap of any two scripts; the last of `count` where there is none."""
+    first = count
+    for a, b in pairs:
+        hit = first_overlap(a.script, a.body.size, b.script, b.body.size)
+        first = first if hit is None else min(first, hit)
+    return max(first - 1, 0)
+
+
 def key_of(a: Mover, b: Mover) -> tuple[str, str]:
     """A pair by its names."""
     return a.name, b.name
@@ -146,6 +166,12 @@ def separation(a: Body, b: Body) -> Separation:
             gap, best = wide, row
     way, _, x, y = best
     return Separation(gap, (x, y) if way >= 0 else (-x, -y))
+
+
+def fastest_closing(one: Body, other: Body, normal: Point) -> float:
+    """The speed at which any points of two bodies can come together along a normal (from the first), m/s."""
+    closing = (one.vx - other.vx) * normal[0] + (one.vy - other.vy) * normal[1]
+    return closing + abs(one.spin) * one.radius + abs(other.spin) * other.radius
 
 
 def touch_points(a: Body, b: Body) -> list[Point]:

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from itertools import islice, zip_longest
+from itertools import chain, islice, zip_longest
 from typing import NamedTuple
 
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact
+from sgcad_core.planner.encounter.blow_turns import misturned, turns_told
 from sgcad_core.planner.encounter.encounter_search import along_sides
 from sgcad_core.planner.encounter.motion_options import Option
+from sgcad_core.planner.encounter.off_center import beside_middle
 from sgcad_core.planner.encounter.out_of_lanes import OUT
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.scene import Scene
@@ -40,6 +42,8 @@ _PLACES = 5
 _MOST, _MOST_AGAIN = 5, 10
 """Encounters tried: each costs about as much as the first. More where the two touch a second time, since a tail hits
 the other only for some places of the impact."""
+_RANKED = 15
+"""Encounters of which those are tried first that turn the vehicles as told."""
 _WORSE = 1.5
 """By which another place may be worse: less than a maneuver or a departure that does not show there."""
 _BETTER = 0.25
@@ -48,11 +52,12 @@ _BETTER = 0.25
 
 def least_missed(found: Encounter | None, unfold: Unfold) -> WholeCourse:
     """The consequences of an encounter, or of a similar one that is nearer to the stated course."""
-    best = unfold(found, IMPACTS)
     if found is None:
-        return best
+        return unfold(found, IMPACTS)
+    found, *beside = beside_middle(found) or [found]
+    best = unfold(found, IMPACTS)
     again = bool(best.scene.again)
-    for other in islice(_like(found, again), _MOST_AGAIN if again else _MOST):
+    for other in islice(chain(beside, _like(found, again)), _MOST_AGAIN if again else _MOST):
         if best.missed < _TOLD_PART:
             break
         done = unfold(other, IMPACTS if again else [(best.scene.friction, best.scene.restitution)])
@@ -62,13 +67,13 @@ def least_missed(found: Encounter | None, unfold: Unfold) -> WholeCourse:
 
 
 def _like(found: Encounter, again: bool) -> Iterator[Encounter]:
-    """Other places along the stated sides, at the given speeds and at others in turn; for a second contact (`again`) at
-    the given ones first."""
+    """Other places along the stated sides, at the given speeds and at others in turn, those first that turn the
+    vehicles as told; for a second contact (`again`) at the given speeds first."""
     at_speeds = [_along(found, speeds) for speeds in _SPEEDS]
     if again:
         yield from at_speeds.pop(0)
-    for row in zip_longest(*at_speeds):
-        yield from (other for other in row if other)
+    others = (other for row in zip_longest(*at_speeds) for other in row if other)
+    yield from sorted(islice(others, _RANKED), key=misturned) if turns_told(found) else others
 
 
 def _along(found: Encounter, factors: tuple[float, float]) -> Iterator[Encounter]:

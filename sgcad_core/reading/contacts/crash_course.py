@@ -21,9 +21,12 @@ from sgcad_core.reading.text.compass import COMPASS, WORDS, turned
 from sgcad_core.reading.text.sentence_roles import HIT, Role
 from sgcad_core.records.course import CourseTold, Hand, ImpactTold, Spin, Steering
 from sgcad_core.records.specs import Compass
+from sgcad_core.units import METERS
 
 UNREAD: frozenset[Role] = frozenset({"codes", "factors", "towing", "injury", "restraint", "police", "health"})
 _RETOLD: frozenset[Role] = frozenset({"interview"})
+_FAR_M = (0.5, 300.0)
+"""Distances from a contact to a rest that are believed."""
 _HANDS: dict[str, Hand] = {"left": "left", "right": "right"}
 
 
@@ -192,8 +195,19 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
         if m := rule("course_rest.against").search(clause):
             one.add_rest("against", m["thing"], Source(segment.number, m[0], "course_rest.against"))
         one.sources.setdefault("rest.at", Source(segment.number, clause[:20], "course_rest.rest"))
+        _read_distance(one, segment, text)
     if not known and segment.role not in _RETOLD:
         _read_place(one, segment, text, clause)
+
+
+def _read_distance(one: _CourseReader, segment: Segment, text: str) -> None:
+    """The way from the contact to the rest, or how far from it the rest is."""
+    for name in ("course_rest.from_impact", "course_rest.way_to_rest"):
+        if m := rule(name).search(text):
+            meters = float(m["number"]) * METERS[m["unit"].lower()]
+            if _FAR_M[0] <= meters <= _FAR_M[1]:
+                one.add_rest("distance_m", round(meters, 1), Source(segment.number, m[0], name))
+            return
 
 
 def _rest_clause(segment: Segment, text: str) -> str | None:

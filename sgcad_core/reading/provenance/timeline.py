@@ -187,7 +187,7 @@ def _course_acts(course: CourseTold) -> Iterator[tuple[str, ActKind, Phase, Any]
     if course.rolls:
         yield "rolls", "rolls_over", "after", None
     rest = course.rest
-    for name in ("where", "against", "side", "attitude", "facing_deg"):
+    for name in ("where", "against", "side", "attitude", "facing_deg", "distance_m"):
         if (value := getattr(rest, name)) is not None:
             yield f"rest.{name}", "rests", "after", value
             return

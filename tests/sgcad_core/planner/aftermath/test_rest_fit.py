@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from sgcad_core.metrics.rest_error import attitude_of, rest_errors
 from sgcad_core.planner import plan
@@ -131,6 +133,53 @@ def test_many_ways_at_once_end_where_each_alone_ends(bend, turning, rolls_s) -> 
         one.x, one.y, one.heading = one.x + one.vx * step, one.y + one.vy * step, one.heading + one.spin * step
         apply_friction(one, drag, step, max(end - k * step, 0.1), run, k * step)
     assert together == pytest.approx((one.x, one.y, one.heading), abs=1e-6)
+
+
+@pytest.mark.parametrize(("turning", "yaws"), [(1.0, 0.0), (0.35, 0.6), (0.6, -1.2)])
+def test_a_slide_among_many_ways_ends_where_it_ends_alone(turning, yaws) -> None:
+    drag, run, step, end = Drag(4.5, 7.0), RunOut(0.0, 3.0, 0.0, turning, 0.0, True, yaws), 0.01, 5.0
+    one = body((1.0, 2.0, 0.3), CAR, 1450.0)
+    one.vx, one.vy, one.spin = 11.0, 2.0, 1.8
+    (ways,) = run_out_paths([Released(one, 0.0)], [drag], [[RunOut(0.0, 4.0, 0.03), run]], end, step)
+    for k in range(round(end / step)):
+        one.x, one.y, one.heading = one.x + one.vx * step, one.y + one.vy * step, one.heading + one.spin * step
+        apply_friction(one, drag, step, max(end - k * step, 0.1), run, k * step)
+    assert ways[-1][1] == pytest.approx((one.x, one.y, one.heading), abs=1e-6)
+
+
+@given(st.floats(3, 30), st.floats(-4, 4), st.floats(1.5, 7), st.floats(0.35, 1), st.floats(-1, 1))
+@settings(max_examples=60, deadline=None)
+def test_a_body_that_slides_turns_and_keeps_its_way(mps, spin, along, turning, drags) -> None:
+    one, run = body((0.0, 0.0, 0.0), CAR, 1450.0), RunOut(0.0, along, 0.0, turning, 0.0, True, drags * 0.2 * along)
+    one.vx, one.spin = mps, spin
+    (ways,) = run_out_paths([Released(one, 0.0)], [Drag(4.5, 7.0)], [[run]], 40.0, 0.05)
+    assert np.abs(ways[:, 0, 1]).max() < 1e-9
+    assert np.diff(ways[:, 0, 0]).min() >= 0.0
+    assert ways[-1] == pytest.approx(ways[-2])
+    assert ways[-1, 0, 0] >= mps**2 / (2 * along) - 0.05 * mps - 0.1  # the farther the more it turns
+
+
+def test_what_drags_on_its_left_turns_left_as_it_slides() -> None:
+    one = body((0.0, 0.0, 0.0), CAR, 1450.0)
+    one.vx = 12.0
+    ways = [RunOut(0.0, 4.0, 0.0, 1.0, 0.0, True, yaws) for yaws in (-0.8, 0.0, 0.8)]
+    ends = run_out_paths([Released(one, 0.0)], [Drag(4.5, 7.0)], [ways], 8.0, 0.05)[0][-1]
+    assert ends[0][2] == pytest.approx(-ends[2][2])
+    assert ends[1][2] == 0.0
+    assert math.degrees(ends[2][2]) > 20.0
+
+
+def test_no_way_to_rest_slows_so_little_that_it_crawls() -> None:
+    assert min(way.along_mps2 for way in all_runs(0.0, 7.0, 15.0)) >= 1.4
+    assert min(way.along_mps2 for way in all_runs(0.0, 1.6, 15.0)) >= 0.8  # on ice
+
+
+def test_a_told_distance_is_gone() -> None:
+    for told in (8.0, 16.0):
+        made, tracks = planned({"V2": CourseTold(rest=RestTold(distance_m=told))})
+        k = round(made.contact.t_s / 0.05)
+        way = math.dist((tracks["V2"].x_m[k], tracks["V2"].y_m[k]), (tracks["V2"].x_m[-1], tracks["V2"].y_m[-1]))
+        assert way == pytest.approx(told, rel=0.3), made.notes
 
 
 def test_who_rolls_on_comes_further_before_it_brakes() -> None:

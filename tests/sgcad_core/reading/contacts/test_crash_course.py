@@ -135,3 +135,27 @@ def test_every_fact_of_a_course_has_its_sentence() -> None:
 @pytest.mark.parametrize("told", ["after striking Vehicle #2 rotated", "after colliding with Vehicle #2, then rotated"])
 def test_what_follows_a_contact_told_again_is_the_strikers_deed(told: str) -> None:
     assert impacts(f"{HIT} Vehicle #1 {told} clockwise and then contacted a utility pole.") == [("V1", "pole")]
+
+
+# ------------------------------------------------------------------ how far
+@pytest.mark.parametrize(
+    ("words", "meters"),
+    [
+        ("came to rest approximately 12 meters north of the point of impact", 12.0),
+        ("came to final rest 40 feet from the initial impact", 12.2),
+        ("traveled approximately 60 meters before coming to rest in a field", 60.0),
+        ("was knocked 25 meters coming to rest on its side", 25.0),
+        ("slid 20 yards and came to a stop", 18.3),
+    ],
+)
+def test_the_distance_to_the_rest_is_read(words: str, meters: float) -> None:
+    assert course(f"{HIT} Vehicle #1 {words}.").rest.distance_m == meters
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["left 20 meters of skid marks before the impact", "came to rest 900 meters from the impact",
+     "traveled 20 meters, struck a pole and came to rest"],
+)  # fmt: skip
+def test_other_lengths_are_no_distance_to_the_rest(words: str) -> None:
+    assert course(f"{HIT} Vehicle #1 {words}.").rest.distance_m is None

@@ -1,0 +1,82 @@
+"""How well an encounter turns its vehicles as the report tells: by one impulse, and the way that they then slide.
+
+A rough forecast that orders encounters, before any is simulated whole. Knows encounters; no scene and no road.
+"""
+
+from __future__ import annotations
+
+import math
+
+from sgcad_core.kinds import mass_kg
+from sgcad_core.metrics.rest_error import compass_rad
+from sgcad_core.planner.actor_plan import Role
+from sgcad_core.planner.aftermath.blow import blow
+from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, body
+from sgcad_core.planner.aftermath.wreck_bodies import center_of, separation, touch_points
+from sgcad_core.planner.encounter.pairing import Encounter
+from sgcad_core.planner.motion import STEP_S, Motion
+
+_SLOWS_MPS2 = 3.0
+"""Of a body that slides to rest, some wheels locked."""
+_KEEPS = 0.6
+"""Share of the rotation of the blow, over the time of the slide, that the ground leaves."""
+_STEERS_RADPS2 = 0.4
+"""Angular acceleration that dragging wheels add in either sense, over that time."""
+_SOME_RAD = math.radians(45.0)
+"""Rotation of a vehicle of which only the sense is told."""
+
+
+def turns_told(found: Encounter) -> bool:
+    """Whether a rotation or a facing at rest is told of either vehicle."""
+    return any(_tells(option.role) for option in (found.first, found.second))
+
+
+def _tells(role: Role) -> bool:
+    told = role.told
+    return not role.actor.record.thing and (told.spin is not None or told.rest.facing_deg is not None)
+
+
+def misturned(found: Encounter) -> float:
+    """Radians by which the vehicles would turn otherwise than told, both together; 0 where no rotation is told."""
+    roles = found.first.role, found.second.role
+    wanted = [_wanted(role, motion, own) for role, motion, own in zip(roles, *_clocks(found), strict=True)]
+    first, second = (_moving(role, motion, own) for role, motion, own in zip(roles, *_clocks(found), strict=True))
+    touch = center_of(touch_points(first, second)), separation(first, second).normal
+    after = blow((first, second), touch, RESTITUTION, FRICTION)
+    return sum(_off(turn, after[k]) for k, turn in enumerate(wanted) if turn is not None)
+
+
+def _clocks(found: Encounter) -> tuple[tuple[Motion, Motion], tuple[float, float]]:
+    meeting = found.meeting
+    return (meeting.first, meeting.second), (meeting.first_s, meeting.second_s)
+
+
+def _wanted(role: Role, motion: Motion, own_s: float) -> float | None:
+    """The told rotation, left positive; None where none is told."""
+    told, came = role.told, float(motion.poses([own_s])[0, 2])
+    if not _tells(role):
+        return None
+    sign = {"counterclockwise": 1.0, "clockwise": -1.0}.get(told.spin or "", 0.0)
+    if sign and told.spin_deg:
+        return sign * math.radians(told.spin_deg)
+    if told.rest.facing_deg is None:
+        return sign * _SOME_RAD
+    turn = math.remainder(compass_rad(told.rest.facing_deg) - came, 2 * math.pi)
+    return turn if sign * turn >= -_SOME_RAD else turn + sign * 2 * math.pi
+
+
+def _moving(role: Role, motion: Motion, own_s: float) -> Body:
+    """The body as it comes to touch."""
+    mass = None if motion.fixed else mass_kg(role.actor.kind, role.size[0])
+    before, now = motion.poses([own_s - STEP_S, own_s])
+    found = body((float(now[0]), float(now[1]), float(now[2])), role.size, mass)
+    if not motion.standing and mass is not None:
+        found.vx, found.vy = (float(v) for v in (now - before)[:2] / STEP_S)
+    return found
+
+
+def _off(wanted: float, after: tuple[float, float, float]) -> float:
+    """What is missing of a rotation after a blow, beyond what wheels that drag add."""
+    lasts_s = math.hypot(*after[:2]) / _SLOWS_MPS2
+    turned = _KEEPS * after[2] * max(lasts_s, 0.3)
+    return max(abs(wanted - turned) - _STEERS_RADPS2 * lasts_s**2, 0.0)

@@ -1,0 +1,69 @@
+"""A narrow thing that a vehicle strikes stands before one half of the side that strikes it, so that the blow turns it.
+
+A blow at the very middle of a side stops a vehicle where it is, and is as rare as any other single place. The half is
+that which turns the vehicle as the report tells. Knows encounters; no scene.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats, Size, sides_at
+from sgcad_core.planner.actor_plan import Role
+from sgcad_core.planner.encounter.pairing import Encounter
+from sgcad_core.planner.lines.departures import side_of
+from sgcad_core.planner.motion import Motion
+
+NARROW_M = 1.2
+"""A wider thing has no side of its own."""
+SHARES = (0.45, 0.72, 0.25)
+"""Of half the side: how far beside its middle the thing stands where the report tells a rotation or a facing."""
+USUAL = 0.5
+"""The same where it tells neither."""
+
+
+def beside_middle(found: Encounter) -> list[Encounter]:
+    """The encounter with the thing at several places along the side that strikes it, the likeliest first; [] where no
+    narrow thing is struck."""
+    return list(_beside_middle(found))
+
+
+def _beside_middle(found: Encounter) -> Iterator[Encounter]:
+    meeting = found.meeting
+    for thing, by in ((found.first, found.second), (found.second, found.first)):
+        if not thing.role.actor.record.thing or max(thing.role.size) > NARROW_M or not by.role.actor.record.wheeled:
+            continue
+        first = thing is found.first
+        motions = (meeting.first, meeting.first_s), (meeting.second, meeting.second_s)
+        (here, at_s), (driven, by_s) = motions if first else motions[::-1]
+        if not here.standing:
+            continue
+        for share in _shares(by.role):
+            moved = _moved(here, at_s, (driven.poses([by_s])[0], by.role.size), share)
+            both = (moved, meeting.second) if first else (meeting.first, moved)
+            yield found._replace(meeting=meeting._replace(first=both[0], second=both[1]))
+
+
+def _shares(role: Role) -> tuple[float, ...]:
+    """Signed shares of half a side: positive turns the vehicle counter-clockwise."""
+    if role.spins:
+        return tuple(math.copysign(share, role.spins) for share in SHARES)
+    return (USUAL if side_of(role.actor.maneuver, role.told.departs) == "left" else -USUAL,)
+
+
+def _moved(thing: Motion, at_s: float, striking: tuple[Floats, Size], share: float) -> Motion:
+    """The thing moved along the side at which a vehicle, in a pose and of a size, strikes it."""
+    by, size = striking
+    center = thing.poses([at_s])[:, :2]
+    (side,), _ = sides_at(by[None], size, center)
+    out = float(by[2]) + side * math.pi / 2
+    along = np.array([-math.sin(out), math.cos(out)])
+    half = size[1 - side % 2] / 2
+    is_at = float((center[0] - by[:2]) @ along)
+    return replace(
+        thing, path=thing.path.displaced(np.repeat([(share * half - is_at) * along], len(thing.path.points), 0))
+    )

@@ -1,0 +1,63 @@
+"""A narrow thing stands before that half of the side that strikes it by which the vehicle turns as told."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sgcad_core.geometry.plane import local_points
+from sgcad_core.planner.encounter.conflict import Conflicts
+from sgcad_core.planner.encounter.off_center import beside_middle
+from sgcad_core.planner.lines.maneuver_course import course_of
+from sgcad_core.records.course import CourseTold
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
+from tests.sgcad_core.planner.crash_scenes import network
+
+
+def into_thing(told: CourseTold, size_m: float = 0.4):
+    """The encounter of V1 eastbound with a thing beside its road."""
+    actors = (
+        Actor(id="V1", kind="car", road="W", direction="forward", exit_road="E", maneuver="departing_road_right"),
+        Actor(id="O1", kind="object", road="E", direction="forward", maneuver="stopped", length_m=size_m,
+              width_m=size_m),
+    )  # fmt: skip
+    contact = Contact(striker="V1", struck="O1", striker_area="front", struck_area="front")
+    behavior = BehaviorSpec(actors=actors, contacts=(contact,))
+    lines = {a.id: course_of(network("four_leg"), a, 3.0) for a in actors}
+    return Conflicts(behavior, lines, told={"V1": told}).of(contact)
+
+
+def left_m(found) -> float:
+    """How far to the left of the middle of V1's front the thing is met."""
+    meeting = found.meeting
+    car, thing = (
+        motion.poses([own])[0]
+        for motion, own in ((meeting.first, meeting.first_s), (meeting.second, meeting.second_s))
+    )  # fmt: skip
+    return float(local_points(car[None], thing[None, None, :2])[0, 0, 1])
+
+
+@pytest.mark.parametrize(("spin", "sign"), [("counterclockwise", 1.0), ("clockwise", -1.0)])
+def test_the_thing_stands_on_the_side_to_which_the_vehicle_is_told_to_turn(spin: str, sign: float) -> None:
+    places = [left_m(one) * sign for one in beside_middle(into_thing(CourseTold(spin=spin)))]
+    assert len(places) > 1
+    assert min(places) > 0.2
+    assert max(places) < 0.9
+
+
+def test_without_a_told_turn_it_stands_a_little_off_the_middle() -> None:
+    (place,) = [left_m(one) for one in beside_middle(into_thing(CourseTold()))]
+    assert 0.2 < abs(place) < 0.6
+
+
+def test_the_moment_and_the_way_of_the_vehicle_stay() -> None:
+    found = into_thing(CourseTold())
+    (moved,) = beside_middle(found)
+    assert moved.meeting.first_s == found.meeting.first_s
+    assert moved.meeting.first is found.meeting.first
+    apart = np.hypot(*np.ptp([found.meeting.second.path.points[0], moved.meeting.second.path.points[0]], axis=0))
+    assert apart < 1.0
+
+
+def test_a_wide_thing_stays_where_it_is() -> None:
+    assert beside_middle(into_thing(CourseTold(), size_m=3.0)) == []
