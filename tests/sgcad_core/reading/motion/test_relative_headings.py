@@ -1,0 +1,24 @@
+"""Headings that nothing tells, from what is told of the other vehicle."""
+
+import pytest
+
+from sgcad_core.reading.reading import read
+
+
+@pytest.mark.parametrize(
+    ("side", "struck", "heading", "area"),
+    [
+        ("left", "V2", "S", "front"),
+        ("left", "the left side of V2", "S", "left"),
+        ("left", "the back of V2", "N", "back"),
+        ("right", "V2", "N", "back"),
+        ("right", "the left side of V2", "N", "left"),
+    ],
+)
+def test_a_parked_vehicle_heads_as_the_traffic_on_its_side_of_the_road(
+    side: str, struck: str, heading: str, area: str
+) -> None:
+    told = f"V1 was traveling north on a road. V1 departed the roadway to the {side} and the front of V1 struck {struck}"
+    crash = read(f"{told}, which was legally parked.").crash
+    assert crash.vehicles[1].heading == heading
+    assert crash.contacts[0].struck_area == area
