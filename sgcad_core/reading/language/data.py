@@ -15,7 +15,7 @@ from typing import Any
 import yaml
 
 from sgcad_core.reading.language.alternatives import any_of
-from sgcad_core.reading.language.needs import Told, Words, needs_of, slot, told_by, told_by_any, told_by_words
+from sgcad_core.reading.language.needs import Told, needs_of, slot, told_by, told_by_any, told_by_words
 from sgcad_core.reading.language.records import RuleRecord, WordClass, fault, rule_record, word_class
 
 HERE = Path(__file__).parent
@@ -77,8 +77,8 @@ class Language:
             text = SLOT.sub(lambda m: given[m[1]] if m[1] in given else self.slot(m[1], file, record), text)
         raise fault(file, record, f"slots nest deeper than {_DEEPEST}", "let no class stand in its own pattern")
 
-    def needs(self, record: RuleRecord) -> Words:
-        """Pieces of text (`grams`), one of which is in every text that the rule reads; none if that is not known."""
+    def needs(self, record: RuleRecord) -> tuple[str, ...]:
+        """Words in small letters, one of which is in every text that the rule reads; none if that is not known."""
         samples = {name: told_by_words([word]) for name, word in record.given.items()}
         return needs_of(self._told("|".join(record.alternatives), samples))
 

@@ -1,16 +1,15 @@
-"""What a text must hold for a pattern to match in it: letters, one of which stands in every match.
+"""What a text must hold for a pattern to match in it: words, one of which stands in every match.
 
 `told_by` finds them in the pattern's syntax tree, as the prefilters of RE2 and codesearch do (Cox, "Regular Expression
-Matching with a Trigram Index", 2012); `grams` gives the pieces of a text. Where both are disjoint the pattern matches
-nowhere in the text, which is told in a fraction of the time. Knows no rule.
+Matching with a Trigram Index", 2012). A text that `lacks` them all has no match, which is told in a fraction of the
+time. Knows no rule.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
-from itertools import chain
-from operator import add
+from math import prod
 from re import _parser  # type: ignore[attr-defined]
 from typing import Any
 
@@ -24,8 +23,6 @@ UNKNOWN: Told = (None, ())
 _MOST = 64
 """Texts that a piece is listed as; one with more is cut before the next piece."""
 _CHARACTERS = 10
-_GRAM = 4
-"""Longest piece of a text that is looked up."""
 _NOTHING: Words = frozenset({""})
 _ASCII = 128
 _SLOTS = 0xF0000
@@ -38,32 +35,35 @@ _SHARE = {letter: 1 / (rank + 5) for rank, letter in enumerate(_LETTERS)}
 
 
 # ------------------------------------------------------------------ texts
-def grams(text: str) -> Words:
-    """All pieces of one to four characters, in small letters."""
-    if len(text) <= _SHORT:
-        return _of_short(text)
-    return _of_middle(text) if len(text) <= _MIDDLE else _of_long(text)
+def lacks(text: str, words: Sequence[str]) -> bool:
+    """Whether a text has none of some words in small letters, in whatever case; never if there are none."""
+    low = _low_of_short(text) if len(text) < _SHORT else _low_of_long(text)
+    for word in words:  # a loop, since `any` takes twice the time
+        if word in low:
+            return False
+    return bool(words)
 
 
-def _pieces(text: str) -> Words:
-    low = text.lower() if text.isascii() else text.translate(_ODD).lower()
-    two = list(map(add, low, low[1:]))
-    three = list(map(add, two, low[2:]))
-    return frozenset(chain(low, two, three, map(add, three, low[3:])))
+def _low(text: str) -> str:
+    return text.lower() if text.isascii() else text.translate(_ODD).lower()
 
 
-_SHORT, _MIDDLE = 200, 2000
-"""Characters of a text. The pieces of the last texts are kept, some 20 MB at most of each length."""
-_of_short = lru_cache(maxsize=1024)(_pieces)
-_of_middle = lru_cache(maxsize=64)(_pieces)
-_of_long = lru_cache(maxsize=2)(_pieces)
+_SHORT = 2000
+"""Characters of a text. The last texts of either kind are kept."""
+_low_of_short = lru_cache(maxsize=1024)(_low)
+_low_of_long = lru_cache(maxsize=4)(_low)
 
 
 # ------------------------------------------------------------------ patterns
-def needs_of(told: Told) -> Words:
-    """Pieces as of `grams`, one of which is in every text with a match; none if that is not known."""
+def needs_of(told: Told) -> tuple[str, ...]:
+    """Words in small letters, one of which is in every text with a match, the commonest first; none if not known."""
     exact, more = told
-    return frozenset(map(_rarest, min((*more, *_closed(exact)), key=_commonness, default=())))
+    found = min((*more, *_closed(exact)), key=_commonness, default=frozenset[str]())
+    return tuple(sorted((word for word in found if not _holds_another(word, found)), key=_share, reverse=True))
+
+
+def _holds_another(word: str, words: Words) -> bool:
+    return any(other in word and other != word for other in words)
 
 
 def told_by(pattern: str, slots: Sequence[Told] = ()) -> Told:
@@ -92,20 +92,13 @@ def told_by_any(branches: Sequence[Told]) -> Told:
 
 
 @lru_cache(maxsize=4096)
-def _rarest(word: str) -> str:
-    return min((word[i : i + _GRAM] for i in range(max(1, len(word) - _GRAM + 1))), key=_share)
-
-
-@lru_cache(maxsize=4096)
-def _share(piece: str) -> float:
-    share = 1.0
-    for character in piece:
-        share *= _SHARE.get(character, 0.03)
-    return share
+def _share(word: str) -> float:
+    """How common a word may be, by its letters."""
+    return prod(_SHARE.get(character, 0.03) for character in word)
 
 
 def _commonness(words: Iterable[str]) -> float:
-    return sum(_share(word[:_GRAM]) for word in words)
+    return sum(map(_share, words))
 
 
 def _closed(exact: Words | None) -> Needs:

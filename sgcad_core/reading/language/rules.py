@@ -12,7 +12,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 from sgcad_core.reading.language.data import language
-from sgcad_core.reading.language.needs import grams
+from sgcad_core.reading.language.needs import lacks
 from sgcad_core.reading.language.records import RuleRecord, fault
 
 Found = Callable[..., re.Match[str] | None]
@@ -138,9 +138,9 @@ _FEW = 16
 
 
 def _lacks(record: RuleRecord) -> Callable[[str], bool]:
-    asked, needs = 0, frozenset[str]()
+    asked, needs = 0, tuple[str, ...]()
 
-    def lacks(text: str) -> bool:
+    def told(text: str) -> bool:
         nonlocal asked, needs
         if len(text) < _FEW:
             return False
@@ -149,9 +149,9 @@ def _lacks(record: RuleRecord) -> Callable[[str], bool]:
             if asked < _ENOUGH:
                 return False
             needs = language().needs(record)
-        return bool(needs) and needs.isdisjoint(grams(text))
+        return lacks(text, needs)
 
-    return lacks
+    return told
 
 
 def _any(words: tuple[str, ...]) -> str:
