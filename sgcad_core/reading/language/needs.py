@@ -27,7 +27,7 @@ _NOTHING: Words = frozenset({""})
 _ASCII = 128
 _SLOTS = 0xF0000
 """Characters of private use."""
-_ODD = str.maketrans("\u0130\u0131\u017f\u212a", "iisk")
+_ODD = (("\u0130", "i"), ("\u0131", "i"), ("\u017f", "s"), ("\u212a", "k"))
 """Characters beyond ASCII that `re` takes for letters of ASCII where capitals do not matter."""
 _LETTERS = " etaoinsrhldcumfpgwybvkxjqz"
 """Of English texts, the commonest first."""
@@ -45,7 +45,10 @@ def lacks(text: str, words: Sequence[str]) -> bool:
 
 
 def _low(text: str) -> str:
-    return text.lower() if text.isascii() else text.translate(_ODD).lower()
+    if not text.isascii():
+        for odd, letter in _ODD:
+            text = text.replace(odd, letter)
+    return text.lower()
 
 
 _SHORT = 2000
@@ -59,7 +62,8 @@ def needs_of(told: Told) -> tuple[str, ...]:
     """Words in small letters, one of which is in every text with a match, the commonest first; none if not known."""
     exact, more = told
     found = min((*more, *_closed(exact)), key=_commonness, default=frozenset[str]())
-    return tuple(sorted((word for word in found if not _holds_another(word, found)), key=_share, reverse=True))
+    fewer = found if len(found) > _MOST else {word for word in found if not _holds_another(word, found)}
+    return tuple(sorted(fewer, key=_share, reverse=True))
 
 
 def _holds_another(word: str, words: Words) -> bool:

@@ -129,10 +129,8 @@ def _within(id: str, filling: tuple[tuple[str, str], ...]) -> re.Pattern[str]:
     return language().pattern(rule(id).record, dict(filling))
 
 
-_ENOUGH = 4000
-"""Characters that a pattern is asked about before it is worth knowing what its matches need (about 1 ms of work)."""
-
-
+_ENOUGH = 12_000
+"""Characters that a rule is asked about before it is worth knowing what its matches need, which takes about as long."""
 _FEW = 16
 """So few characters are searched as fast as they are looked up."""
 
