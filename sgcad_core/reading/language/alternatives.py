@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 from itertools import groupby, takewhile
 
-_FEW = 3
+_FEW = 4
 """So few branches are tried as fast as a set of letters is looked at."""
 
 
@@ -20,13 +21,20 @@ def any_of(words: Iterable[str]) -> str:
 
     Words with capitals or letters beyond ASCII are left as they stand, since letters may be the same in another case.
     """
-    listed = list(dict.fromkeys(words))
-    plain = all(word.isascii() and word == word.lower() for word in listed)
-    return f"(?:{'|'.join(_branches(listed) if plain else map(re.escape, listed))})"
+    return _any_of(tuple(dict.fromkeys(words)))
+
+
+@lru_cache(maxsize=256)
+def _any_of(words: tuple[str, ...]) -> str:
+    plain = all(word.isascii() and word == word.lower() for word in words)
+    return f"(?:{'|'.join(_branches(words) if plain else map(re.escape, words))})"
 
 
 def _branches(words: Sequence[str]) -> Iterator[str]:
     """Branches of words; the empty word excludes none, and stays between those before and behind it."""
+    if len(words) <= _FEW:
+        yield from map(re.escape, words)
+        return
     for some, run in groupby(words, key=bool):
         yield from _by_letter(list(run)) if some else ("",)
 
