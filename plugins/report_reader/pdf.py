@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import cast
 
 import pypdf
+from PIL.Image import DecompressionBombError
 from pypdf import PdfReader
 from pypdf.errors import DependencyError, DeprecationError, PyPdfError
 
@@ -97,8 +98,8 @@ def _largest_picture(pages: list) -> Diagram | None:  # type: ignore[type-arg]
     for page in pages:
         try:
             found = [diagram(image.data, Path(image.name)) for image in page.images]
-        except (BadInput, *FAULTS):
-            continue  # a picture in a codec that we do not read is no reason to lose the text
+        except (BadInput, DecompressionBombError, *FAULTS):
+            continue  # a picture in a codec that we do not read, or too large, is no reason to lose the text
         for picture in found:
             if min(picture.width_px, picture.height_px) >= MIN_PICTURE_PX and (
                 best is None or picture.width_px * picture.height_px > best.width_px * best.height_px
