@@ -15,7 +15,7 @@ from PIL import Image
 
 from plugins.report_reader.auto import Auto
 from plugins.report_reader.evidence import MAX_NARRATIVE, diagram
-from plugins.report_reader.pdf import MAX_DRAWN
+from plugins.report_reader.pdf import MAX_DRAWN, _long_palette
 from sgcad_core.errors import BadInput
 from sgcad_core.system.report_files import read_regular
 from tests.plugins.report_reader.test_readers import NARRATIVE, folder, png
@@ -110,6 +110,14 @@ def test_a_picture_that_says_it_is_huge_costs_the_picture_alone(tmp_path, name):
     read = _read(tmp_path, "r.pdf", pdf(text.encode(), picture=name, high=1_000_000))
     assert "struck the rear" in read.narrative
     assert not read.diagrams
+
+
+@pytest.mark.parametrize(("spaces", "long"), [(0, False), (100_000, True)])
+def test_a_palette_beyond_any_real_one_is_not_looked_through(spaces, long):
+    made = pdf(b"q Q" + b" " * spaces, picture="FlateDecode")
+    made = made.replace(b"/ColorSpace /DeviceGray", b"/ColorSpace [/Indexed /DeviceRGB 255 4 0 R]")
+    (page,) = pypdf.PdfReader(io.BytesIO(made)).pages
+    assert _long_palette(page, "/Im0") is long
 
 
 @pytest.mark.parametrize("name", FILTERS)
