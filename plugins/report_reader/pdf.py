@@ -5,11 +5,13 @@ from __future__ import annotations
 import io
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import pypdf
+from PIL.Image import DecompressionBombError
 from pypdf import PdfReader
 from pypdf.errors import DependencyError, DeprecationError, PyPdfError
+from pypdf.generic import StreamObject
 
 from plugins.report_reader.evidence import MAX_NARRATIVE, UNREADABLE, EvidenceReader, diagram
 from sgcad_core.case.records import CrashReport, Diagram
@@ -23,6 +25,8 @@ MAX_DRAWN = 100_000
 """Limit of the drawing operators of all pages; a repeated drawing counts each time. So many take 1.5 s."""
 MAX_DAMAGED_BYTES = 200_000
 """Of a damaged compressed stream, which is read byte by byte: 1 MB takes a second."""
+MAX_PALETTE_BYTES = 10_000
+"""Of 256 colors of up to 32 inks."""
 MIN_PICTURE_PX = 200
 FAULTS = (PyPdfError, DependencyError, DeprecationError, *UNREADABLE)
 """What pypdf raises for a PDF that is broken, or needs a package or a program that is not there."""
@@ -96,12 +100,27 @@ def _largest_picture(pages: list) -> Diagram | None:  # type: ignore[type-arg]
     best: Diagram | None = None
     for page in pages:
         try:
-            found = [diagram(image.data, Path(image.name)) for image in page.images]
-        except (BadInput, *FAULTS):
-            continue  # a picture in a codec that we do not read is no reason to lose the text
+            images = page.images
+            listed = [images[name] for name in images.keys() if not _long_palette(page, name)]  # noqa: SIM118 - a list
+            found = [diagram(image.data, Path(image.name)) for image in listed]
+        except (BadInput, DecompressionBombError, *FAULTS):
+            continue  # a picture in a codec that we do not read, or too large, is no reason to lose the text
         for picture in found:
             if min(picture.width_px, picture.height_px) >= MIN_PICTURE_PX and (
                 best is None or picture.width_px * picture.height_px > best.width_px * best.height_px
             ):
                 best = picture
     return best
+
+
+def _long_palette(page: Any, name: str | list[str]) -> bool:
+    """Whether a picture has a palette beyond any real one, which pypdf would look through byte by byte."""
+    found = page
+    for part in [name] if isinstance(name, str) else name:
+        inside = found.get("/Resources", {}).get("/XObject", {})
+        if part not in inside:  # a picture within the drawing itself
+            return False
+        found = inside[part].get_object()
+    space = found.get("/ColorSpace")
+    palette = space[-1].get_object() if isinstance(space, list) and space else None
+    return isinstance(palette, StreamObject) and len(palette.get_data()) > MAX_PALETTE_BYTES

@@ -62,7 +62,7 @@ _ALLOWED_NODES = frozenset((  # noqa: SIM905 - as above
     "TypeIgnore"
 ).split())  # fmt: skip
 """Syntax by name: what a later Python adds is refused until somebody has looked at it."""
-_PRIVATE_IN_TEXT = re.compile(rf"__\w+__|\{{[^{{}}]*\.(?:_|(?:{'|'.join(sorted(_FORBIDDEN))})\b)")
+_PRIVATE_IN_TEXT = re.compile(rf"__\w+__|\{{[^{{}}]*\.(?:_|(?:{'|'.join(sorted({*_FORBIDDEN, 'format'}))})\b)")
 """Private names, and templates that read a forbidden attribute when they are formatted."""
 
 

@@ -12,6 +12,8 @@ INTRODUCED = rule("references.introduced")
 
 def descriptions(text: str, vehicle: str) -> list[str]:
     """Noun phrases that describe a vehicle: behind "V1," or "V1 was a", or before "(V1)"."""
+    if vehicle not in text:
+        return []
     found = [m.group(1) for m in BRACKETED.finditer(text) if m.group(2) == vehicle]
     for mention in rule("common.named_vehicle").given(vehicle=vehicle).finditer(text):
         start = mention.end() + text.startswith((")", "),"), mention.end())
@@ -23,6 +25,8 @@ def descriptions(text: str, vehicle: str) -> list[str]:
 
 def named_before(text: str, vehicle: str) -> list[str]:
     """Makes, models and body words that a number is given to behind them: "a Ford Escape, V2," or "the van is V1"."""
+    if vehicle.lower() not in text.lower() or not rule("vehicles.named_before").within(vehicle=r"V\d+").search(text):
+        return []  # one pattern for all vehicles, since one for each takes longer to make than to ask
     found = rule("vehicles.named_before").given(vehicle=vehicle).finditer(text)
     return [" ".join(filter(None, m.group("year", "name", "body", "bodied", "only"))) for m in found]
 

@@ -54,7 +54,7 @@ class Roster:
     bystanders: tuple[str, ...] = ()
     """Numbers of actors in the text that take no part in the crash."""
 
-    @property
+    @cached_property
     def ids(self) -> tuple[str, ...]:
         """The numbers in order."""
         return tuple(v.id for v in self.vehicles)
@@ -65,7 +65,7 @@ class Roster:
         numbered = [v for v in rest if not v.beside] or rest
         return numbered[0].id if len(numbered) == 1 else None
 
-    @property
+    @cached_property
     def counted(self) -> bool:
         """Whether the numbers were given here: the report has none and tells one account in order."""
         return any(v.counted for v in self.vehicles)

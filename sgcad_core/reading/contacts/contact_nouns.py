@@ -160,7 +160,8 @@ def is_noun(before: str, word: str, behind: str) -> bool:
 
 def subject_area(before: str, subject: str) -> Zone | None:
     """Area in "the front of V1 ..." if the nearest mention of the subject has one."""
-    found = list(rule("contact.subject_area").given(vehicle=subject).finditer(before))
+    named = rule("contact.subject_area").within(vehicle=r"(?P<vehicle>V\d+)")  # one pattern for all vehicles
+    found = [m for m in named.finditer(before) if m["vehicle"].upper() == subject.upper()]
     if found and found[-1]["area"] and not rule("contact.place_before").search(before[: found[-1].start("area")]):
         return area_of(found[-1]["area"])
     own = rule("contact.own_area").search(before) or rule("contact.with_before").search(before)

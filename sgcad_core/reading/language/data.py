@@ -14,6 +14,8 @@ from typing import Any
 
 import yaml
 
+from sgcad_core.reading.language.alternatives import any_of
+from sgcad_core.reading.language.needs import Told, needs_of, slot, told_by, told_by_any, told_by_words
 from sgcad_core.reading.language.records import RuleRecord, WordClass, fault, rule_record, word_class
 
 HERE = Path(__file__).parent
@@ -43,8 +45,18 @@ class Language:
         own = self._class(name, file, record or name)
         if own.pattern is not None:
             return f"(?:{own.pattern})"
+        if self._plain(own):
+            return any_of(self.values(name))
         parts = [self.slot(other, own.file, name) for other in own.includes]
         return f"(?:{'|'.join(parts + [re.escape(w) if own.plain else w for w in own.words])})"
+
+    def _plain(self, own: WordClass) -> bool:
+        """Whether a class, those that it includes too, has plain words only."""
+        return (
+            own.plain
+            and own.pattern is None
+            and all(self._plain(self._class(n, own.file, own.name)) for n in own.includes)
+        )
 
     def pattern(self, record: RuleRecord, given: Mapping[str, str] | None = None) -> re.Pattern[str]:
         """A rule compiled; `given` are patterns for the caller's slots (the samples where absent)."""
@@ -64,6 +76,36 @@ class Language:
                 return text
             text = SLOT.sub(lambda m: given[m[1]] if m[1] in given else self.slot(m[1], file, record), text)
         raise fault(file, record, f"slots nest deeper than {_DEEPEST}", "let no class stand in its own pattern")
+
+    def needs(self, record: RuleRecord) -> tuple[str, ...]:
+        """Words in small letters, one of which is in every text that the rule reads; none if that is not known."""
+        samples = {name: told_by_words([word]) for name, word in record.given.items()}
+        return needs_of(self._told("|".join(record.alternatives), samples))
+
+    def _told(self, text: str, given: Mapping[str, Told]) -> Told:
+        names = list(dict.fromkeys(SLOT.findall(text)))
+        slots = [given[name] if name in given else self._told_by(name) for name in names]
+        return told_by(SLOT.sub(lambda m: slot(names.index(m[1])), text), slots)
+
+    def _told_by(self, name: str) -> Told:
+        """What a word class tells, asked once."""
+        if name not in self._seen:
+            own = self._class(name, "vocabulary", name)
+            if self._plain(own):
+                self._seen[name] = told_by_words(self.values(name))
+            else:
+                texts = (
+                    [own.pattern]
+                    if own.pattern is not None
+                    else list(map(re.escape, own.words) if own.plain else own.words)
+                )
+                others = [self._told_by(other) for other in own.includes]
+                self._seen[name] = told_by_any([*others, *(self._told(text, {}) for text in texts)])
+        return self._seen[name]
+
+    @cached_property
+    def _seen(self) -> dict[str, Told]:
+        return {}
 
     @cached_property
     def roles(self) -> dict[str, tuple[str, ...]]:

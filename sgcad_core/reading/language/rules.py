@@ -12,6 +12,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 from sgcad_core.reading.language.data import language
+from sgcad_core.reading.language.needs import lacks
 from sgcad_core.reading.language.records import RuleRecord, fault
 
 Found = Callable[..., re.Match[str] | None]
@@ -47,16 +48,26 @@ class Rule:
         """The pattern with the caller's slots filled with plain words (a tuple: any of them)."""
         return _given(self.id, tuple(sorted(filling.items())))
 
-    # The pattern's own bound methods: no call in between, since a report asks thousands of times.
+    def within(self, **filling: str) -> re.Pattern[str]:
+        """The pattern with the caller's slots filled with patterns."""
+        return _within(self.id, tuple(sorted(filling.items())))
+
+    @cached_property
+    def lacks(self) -> Callable[[str], bool]:
+        """Whether a text has nothing of what every match holds; False says nothing."""
+        return _lacks(self.record)
+
+    # The pattern's own methods, asked only where the text may hold a match: a report asks thousands of times.
     @cached_property
     def search(self) -> Found:
         """`re.Pattern.search`."""
-        return self.pattern.search
+        find, lacks = self.pattern.search, self.lacks
+        return lambda text, *within: None if lacks(text) else find(text, *within)
 
     @cached_property
     def match(self) -> Found:
         """`re.Pattern.match`."""
-        return self.pattern.match
+        return self.pattern.match  # one place of a text is tried faster than all of it is looked at
 
     @cached_property
     def fullmatch(self) -> Found:
@@ -66,17 +77,20 @@ class Rule:
     @cached_property
     def finditer(self) -> Callable[..., Iterator[re.Match[str]]]:
         """`re.Pattern.finditer`."""
-        return self.pattern.finditer
+        find, lacks = self.pattern.finditer, self.lacks
+        return lambda text, *within: iter(()) if lacks(text) else find(text, *within)
 
     @cached_property
     def findall(self) -> Callable[..., list[Any]]:
         """`re.Pattern.findall`."""
-        return self.pattern.findall
+        find, lacks = self.pattern.findall, self.lacks
+        return lambda text, *within: [] if lacks(text) else find(text, *within)
 
     @cached_property
     def sub(self) -> Callable[..., str]:
         """`re.Pattern.sub`."""
-        return self.pattern.sub
+        sub, lacks = self.pattern.sub, self.lacks
+        return lambda to, text, count=0: text if lacks(text) else sub(to, text, count)
 
     @cached_property
     def subn(self) -> Callable[..., tuple[str, int]]:
@@ -107,6 +121,34 @@ def of_role(role: str) -> tuple[Rule, ...]:
 def _given(id: str, filling: tuple[tuple[str, str | tuple[str, ...]], ...]) -> re.Pattern[str]:
     patterns = {name: re.escape(w) if isinstance(w, str) else _any(w) for name, w in filling}
     return language().pattern(rule(id).record, patterns)
+
+
+@lru_cache(maxsize=4096)
+def _within(id: str, filling: tuple[tuple[str, str], ...]) -> re.Pattern[str]:
+    return language().pattern(rule(id).record, dict(filling))
+
+
+_ENOUGH = 12_000
+"""Characters that a rule is asked about before it is worth knowing what its matches need, which takes about as long."""
+_FEW = 16
+"""So few characters are searched as fast as they are looked up."""
+
+
+def _lacks(record: RuleRecord) -> Callable[[str], bool]:
+    asked, needs = 0, tuple[str, ...]()
+
+    def told(text: str) -> bool:
+        nonlocal asked, needs
+        if len(text) < _FEW:
+            return False
+        if asked < _ENOUGH:
+            asked += len(text)
+            if asked < _ENOUGH:
+                return False
+            needs = language().needs(record)
+        return lacks(text, needs)
+
+    return told
 
 
 def _any(words: tuple[str, ...]) -> str:

@@ -117,21 +117,23 @@ the same."""
 
 
 def runs(text: TracedText) -> Runs:
-    """Where a text stands in the one it was made of, in few words; () if it is the very same so far as it goes."""
+    """Where a text stands in the one it was made of, in few words; () if it is the very same so far as it goes.
+
+    A character goes on letter by letter, or belongs to the same edit as the one before it.
+    """
     found: list[tuple[int, int, int]] = []
-    for here, (start, end) in enumerate(zip(text.starts, text.ends, strict=True)):
-        if found and _goes_on(found[-1], here, start, end):
-            found[-1] = (*found[-1][:2], max(end, found[-1][2]))
-        else:
-            found.append((here, start, end))
+    begin = there = last = -1
+    for here, (start, end) in enumerate(zip(text.starts, text.ends, strict=True)):  # long texts: nothing is called here
+        verbatim = start == last and end == start + 1 and last - there == here - begin
+        if (verbatim or (start == there and end == last)) and begin >= 0:
+            last = end
+            continue
+        if begin >= 0:
+            found.append((begin, there, last))
+        begin, there, last = here, start, end
+    if begin >= 0:
+        found.append((begin, there, last))
     return () if found[1:] == [] and (not found or found[0] == (0, 0, len(text.text))) else tuple(found)
-
-
-def _goes_on(run: tuple[int, int, int], here: int, start: int, end: int) -> bool:
-    """Whether a character goes on letter by letter, or belongs to the same edit."""
-    begin, there, last = run
-    verbatim = last - there == here - begin
-    return (verbatim and start == last and end == start + 1) or (start, end) == (there, last)
 
 
 def placed(text: str, where: Runs) -> TracedText:

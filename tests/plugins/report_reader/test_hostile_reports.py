@@ -15,13 +15,15 @@ from PIL import Image
 
 from plugins.report_reader.auto import Auto
 from plugins.report_reader.evidence import MAX_NARRATIVE, diagram
-from plugins.report_reader.pdf import MAX_DRAWN
+from plugins.report_reader.pdf import MAX_DRAWN, _long_palette
 from sgcad_core.errors import BadInput
 from sgcad_core.system.report_files import read_regular
 from tests.plugins.report_reader.test_readers import NARRATIVE, folder, png
 
 
-def pdf(content: bytes, pages: int = 1, more: str = "", *, coding: str = "/FlateDecode", picture: str = "") -> bytes:
+def pdf(
+    content: bytes, pages: int = 1, more: str = "", *, coding: str = "/FlateDecode", picture: str = "", high: int = 300
+) -> bytes:
     """A PDF whose pages all draw the same stream, compressed, and have a picture of a coding."""
     packed = zlib.compress(content)
     kids = " ".join(f"{10 + i} 0 R" for i in range(pages))
@@ -37,7 +39,7 @@ def pdf(content: bytes, pages: int = 1, more: str = "", *, coding: str = "/Flate
         },
     }
     if picture:
-        about = "/Type /XObject /Subtype /Image /Width 300 /Height 300 /BitsPerComponent 1 /ColorSpace /DeviceGray"
+        about = f"/Type /XObject /Subtype /Image /Width 300 /Height {high} /BitsPerComponent 1 /ColorSpace /DeviceGray"
         coded = f"/Filter /{picture} /DecodeParms << /JBIG2Globals 4 0 R >> /Length 4"
         objects[5] = f"<< {about} {coded} >>\nstream\n\x97JB2\nendstream"
     out, places = b"%PDF-1.4\n", {}
@@ -100,6 +102,22 @@ def test_a_picture_in_any_coding_costs_the_picture_alone_and_starts_no_program(t
     text = "BT /F1 12 Tf 72 720 Td (The front of V1 struck the rear of V2 there.) Tj ET"
     assert "struck the rear" in _read(tmp_path, "r.pdf", pdf(text.encode(), picture=name)).narrative
     assert not jbig2dec.exists()
+
+
+@pytest.mark.parametrize("name", FILTERS)
+def test_a_picture_that_says_it_is_huge_costs_the_picture_alone(tmp_path, name):
+    text = "BT /F1 12 Tf 72 720 Td (The front of V1 struck the rear of V2 there.) Tj ET"
+    read = _read(tmp_path, "r.pdf", pdf(text.encode(), picture=name, high=1_000_000))
+    assert "struck the rear" in read.narrative
+    assert not read.diagrams
+
+
+@pytest.mark.parametrize(("spaces", "long"), [(0, False), (100_000, True)])
+def test_a_palette_beyond_any_real_one_is_not_looked_through(spaces, long):
+    made = pdf(b"q Q" + b" " * spaces, picture="FlateDecode")
+    made = made.replace(b"/ColorSpace /DeviceGray", b"/ColorSpace [/Indexed /DeviceRGB 255 4 0 R]")
+    (page,) = pypdf.PdfReader(io.BytesIO(made)).pages
+    assert _long_palette(page, "/Im0") is long
 
 
 @pytest.mark.parametrize("name", FILTERS)

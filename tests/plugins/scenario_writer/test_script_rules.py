@@ -39,6 +39,17 @@ def test_a_class_pattern_obeys_the_rules_of_attributes(pattern):
     assert found, pattern
 
 
+@pytest.mark.parametrize(
+    "template", ["{.format}", "{0.format}", "{0[a].format!r:>{1}}", "{a.gi_frame}", "{0.real:{1.format}}"]
+)
+def test_a_template_reads_no_attribute_that_a_dot_may_not(template):
+    assert breaches(parsed(f"print({template!r}.format(str, 3, a=4))\n")), template
+
+
+def test_an_honest_template_is_allowed():
+    assert not breaches(parsed("print('{0.real:.2f} of the format {1}'.format(3.0, 4))\n"))
+
+
 def test_an_honest_class_pattern_is_allowed():
     assert not breaches(parsed("match 3:\n    case int(real=r):\n        print(r)\n"))
 
