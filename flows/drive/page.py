@@ -11,6 +11,8 @@ from flows.player.road_shapes import drawing_of
 from sgcad_core.case.records import CrashReport, Execution
 from sgcad_core.handover.drive import Drive
 from sgcad_core.result import CaseRecord
+from sgcad_core.rules.judge import broken
+from sgcad_core.rules.records import RuleFinding
 
 SCRIPT = "script"
 """Name of the script among the player's runs."""
@@ -61,4 +63,7 @@ def _words(told: Mapping[str, Any]) -> str:
     if could.get("steer_by_s") is not None:
         lines.append(f"Moving aside to the {could['steer_to']} had to begin {could['steer_by_s']:.2f} s before it.")
     lines.append(f"Least clearance {told['closest_m']:.2f} m. Dashed: the script.")
+    found = [RuleFinding.model_validate(one) for one in told["rules"]]
+    kept = f"{told['ego']} broke no traffic rule that the map tells of."
+    lines += [f"{f.words()}." for f in broken(found)] or [kept]
     return " ".join(lines)
