@@ -34,7 +34,7 @@ def thing_of(field: str) -> str:
 
 
 def sentences_of(report: CrashReport, facts: Iterable[Row], items: Iterable[Row] = ()) -> list[dict[str, Any]]:
-    """Sentences that tell facts or that the account names: [start, end) in the narrative as it is shown, the things that
+    """Sentences that tell facts or that the account names: [start, end) in the narrative as shown, the things that
     they tell of, and how they were read (`MARKS`; "read" where the account has nothing against them)."""
     text = placed(report.narrative, report.places)
     things: dict[tuple[int, int], dict[str, None]] = {}

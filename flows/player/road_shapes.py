@@ -124,7 +124,7 @@ def _edge_lines(edge: Edge, graph: LaneGraph) -> list[Line]:
 
 
 def _between(right: Lane, left: Lane) -> Style:
-    """The line between two lanes: dashed between lanes for cars, whole where one is a shoulder, a sidewalk or the like."""
+    """The line between two lanes: dashed between lanes for cars, whole beside a shoulder, a sidewalk and the like."""
     return "edge" if {right.type, left.type} - {"", ROAD_WORKS} else "lane"
 
 

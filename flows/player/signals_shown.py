@@ -1,7 +1,7 @@
 """What the signals beside each approach show while a run is played, for the player.
 
-A signal is that of the traffic that goes straight on, where there is some; turn arrows of their own are not drawn. Knows
-the lane graph and the scenario's plan.
+A signal is that of the traffic that goes straight on, where there is some; turn arrows of their own are not drawn.
+Knows the lane graph and the scenario's plan.
 """
 
 from __future__ import annotations
