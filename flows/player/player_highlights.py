@@ -18,6 +18,8 @@ ALONG_DEG = 20.0
 MARKS = ("contradicts", "unread", "lacks")
 """How a sentence was not read as it stands, the gravest first: the report says something else as well; something of it
 was not read; the scenario lacks something that it tells."""
+MARK_WORDS = {"contradicts": "contradicted", "unread": "not read", "lacks": "not in the scenario"}
+"""The same in words, which stand beside the color."""
 _COMPASS = {point: angle_of(point) for point in WORDS.values()}
 Row = Mapping[str, Any]
 
