@@ -50,7 +50,8 @@ def _further(drive: Drive, track: Trajectory) -> Floats:
         found: Floats = track.pose[-1] + ahead[:, None] * (track.pose[-1] - track.pose[-2]) * np.array([1.0, 1.0, 0.0])
         return found
     rate = drive.clock.rate or 1.0
-    return drive.staging.lines[track.actor].poses_when(float(drive.others_s[-1]) + ahead * STEP_S * rate)
+    own: Floats = np.asarray(float(drive.others_s[-1]) + ahead * STEP_S * rate, dtype=np.float64)
+    return drive.staging.lines[track.actor].poses_when(own)
 
 
 def _mover(drive: Drive, name: str, table: Floats) -> Mover:
