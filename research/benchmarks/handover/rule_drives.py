@@ -27,7 +27,7 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.geometry.plane import Floats, arc_lengths, distinct, headings, offset_polyline, prolonged, resample
-from sgcad_core.kinds import actor_kind
+from sgcad_core.kinds import actor_kind, kind_of_letter
 from sgcad_core.records.specs import Leg, RoadLayout
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.layout import road_spec
@@ -109,7 +109,7 @@ def scene_of(graph: LaneGraph, row: Mapping[str, Any]) -> RuleScene:
 
 
 def _info(name: str, told: Mapping[str, Any]) -> ActorInfo:
-    kind = told.get("kind", {"V": "car", "P": "pedestrian", "B": "bicycle"}[name[0]])
+    kind = told.get("kind", kind_of_letter(name[0]))
     length, width = actor_kind(kind).size
     return ActorInfo(id=name, type=kind, length_m=length, width_m=width, maneuver=told.get("maneuver", "straight"))
 
