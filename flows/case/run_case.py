@@ -90,14 +90,18 @@ def write_files(run: CaseRun, folder: Path) -> dict[str, Any]:
     """Write the case's files into a folder, result.json last; returns the result."""
     record = run.record()
     script = drive_stage.script_or_none(record)
+    rules = drive_stage.rules(script) if script else None
     case_folder.write_artifacts(folder, run.report, with_reading(run.attempts(), record), record)
     if run.metrics is not None:
+        if rules:
+            run.metrics["rules"] = rules.counts
         _hand_over(run, folder, record, script)
         case_folder.write_json(folder / "metrics.json", run.metrics)
     if run.trace:
         (folder / "error.txt").write_text(run.trace, encoding="utf-8", errors="replace")
     result = result_of(record) if run.result is None else run.result
     result["impact"] = drive_stage.impact(script, record) if script else None
+    result["rules"] = rules.findings if rules else []
     _draw(run, folder, record, result)
     _hand_to_a_stack(run, folder, record, script, result)
     result["seconds"] = seconds_of(record)  # with those of the drawing

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from flows.drive.run_drive import FOLDER, Order, drive_script
 from flows.drive.script_of_case import roles_of
@@ -12,8 +12,11 @@ from sgcad_core.config import DriveStage
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.handover.contact_figures import contact_figures, impact_summary
 from sgcad_core.handover.outcome import OUTCOMES
+from sgcad_core.handover.rules_of_drive import drive_figures, rules_of_script
 from sgcad_core.handover.script import Script
 from sgcad_core.result import CaseRecord
+from sgcad_core.rules.judge import figures
+from sgcad_core.rules.records import RuleFinding
 
 FIGURES = ("braked_s", "braked_at_ttc_s", "hardest_mps2", "closest_m", "least_ttc_s", "pet_s", "lag_s")
 
@@ -44,6 +47,19 @@ def impact(script: Script, record: CaseRecord) -> dict[str, Any] | None:
     return impact_summary(script, record.execution.contact if record.execution else None)
 
 
+class RulesOfCase(NamedTuple):
+    """Traffic rules of a case: counts for metrics.json, findings for result.json."""
+
+    counts: dict[str, Any]
+    findings: list[dict[str, Any]]
+
+
+def rules(script: Script) -> RulesOfCase:
+    """Traffic rules of the scripted motion, of every actor."""
+    found = rules_of_script(script)
+    return RulesOfCase(figures(found), [f.model_dump() for f in found])
+
+
 def script_in(record: CaseRecord, role_of: Mapping[str, str]) -> Script:
     """An executed case as a script. Raises ValueError for one that was not executed."""
     scenario, execution, network = record.scenario, record.execution, record.network
@@ -59,6 +75,7 @@ def script_in(record: CaseRecord, role_of: Mapping[str, str]) -> Script:
         roles=roles_of(facts, role_of),
         surface=scenario.behavior.surface if scenario.behavior else None,
         net_xml=network.net_xml,
+        xosc=scenario.xosc,
     )
 
 
@@ -66,6 +83,8 @@ def _figures(told: Mapping[str, Any]) -> dict[str, Any]:
     now, then = told.get("severity"), told.get("scripted")
     hardness = {"delta_v_mps": _worst(now) if now else 0.0} if told["outcome"] != "failed" else {}
     hardness |= {"scripted_delta_v_mps": _worst(then)} if then else {}
+    found = tuple(RuleFinding.model_validate(f) for f in told.get("rules", ()))
+    hardness |= drive_figures(found, told["ego"]) if told["outcome"] != "failed" else {}
     outcomes = {o: int(told["outcome"] == o) for o in (*OUTCOMES, "failed")}
     return {"ego": told["ego"], **outcomes, **{n: told[n] for n in FIGURES if told.get(n) is not None}, **hardness}
 

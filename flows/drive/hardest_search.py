@@ -26,6 +26,7 @@ from sgcad_core.handover.family.map_elites import Cell, illuminate
 from sgcad_core.handover.family.parameter import Parameter
 from sgcad_core.handover.family.variant import member, undisturbed
 from sgcad_core.handover.outcome import DriveResult, judge_drive
+from sgcad_core.handover.rules_of_drive import broken_by
 from sgcad_core.handover.script import staging_for
 
 Method = Literal["cross-entropy", "map-elites"]
@@ -111,6 +112,7 @@ def _judged(result: DriveResult | None) -> tuple[float, Cell] | None:
 def _rates(family: Family, found: Searched, seen: Sequence[DriveResult | None]) -> dict[str, Any]:
     same = np.array([c is not None for c in seen])
     touched = np.array([c is not None and c.contact is not None for c in seen])
+    breaks = np.array([bool(_broken(c)) for c in seen])
     inside = found.rate(same)[0]
     rate, error = found.rate(touched)
     order = [int(k) for k in np.argsort(-found.hardness, kind="stable") if np.isfinite(found.hardness[k])]
@@ -118,6 +120,8 @@ def _rates(family: Family, found: Searched, seen: Sequence[DriveResult | None]) 
         "samples": len(seen), "members": int(same.sum()), "effective_samples": round(found.effective, 1),
         "contact_rate": round(rate / inside, 4) if inside > 0 else None,
         "contact_rate_error": round(error / inside, 4) if inside > 0 else None,
+        "rule_rate": round(found.rate(breaks)[0] / inside, 4) if inside > 0 else None,
+        "hardest_by_rules": [_elite(family, found, seen, k) for k in _by_rules(found, seen)[:TOLD]],
         "hardest": [_elite(family, found, seen, k) for k in order[:TOLD]],
     }  # fmt: skip
 
@@ -127,7 +131,19 @@ def _elite(family: Family, found: Searched, seen: Sequence[DriveResult | None], 
     return {
         "values": family.values(found.latents[k]), "hardness": round(float(found.hardness[k]), 4),
         "weight": round(float(found.weights[k]), 6), "outcome": one.outcome if one else "",
+        "rules": _broken(one),
     }  # fmt: skip
+
+
+def _broken(one: DriveResult | None) -> list[str]:
+    """Rules that the ego broke in a sample."""
+    return list(broken_by(one.rules, one.ego)) if one else []
+
+
+def _by_rules(found: Searched, seen: Sequence[DriveResult | None]) -> list[int]:
+    """Samples in which the ego broke a rule: the most rules first, of as many the hardest."""
+    counts = {k: len(_broken(one)) for k, one in enumerate(seen) if np.isfinite(found.hardness[k])}
+    return sorted((k for k, n in counts.items() if n), key=lambda k: (-counts[k], -float(found.hardness[k]), k))
 
 
 def _cell(cell: Cell) -> dict[str, Any]:

@@ -5,12 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from flows.player import player_page
 from flows.player.player_data import COLORS, Mover, View
 from flows.player.road_shapes import drawing_of
-from sgcad_core.case.records import CrashReport, Execution
+from flows.player.signals_shown import shown_by
+from sgcad_core.case.driver_io import STEP_S
+from sgcad_core.case.records import CrashReport, Execution, Floats
+from sgcad_core.handover.after_contact import with_aftermath
 from sgcad_core.handover.drive import Drive
 from sgcad_core.result import CaseRecord
+from sgcad_core.rules.records import RuleFinding
 
 SCRIPT = "script"
 """Name of the script among the player's runs."""
@@ -19,9 +25,8 @@ SCRIPT = "script"
 def page(driven: Drive, told: Mapping[str, Any]) -> str:
     """The page as text: the drive, and over it in dashes the script."""
     infos = {a.id: a for a in driven.staging.script.actors}
-    movers = (
-        Mover(infos[t.actor], t, COLORS[k % len(COLORS)]) for k, t in enumerate(driven.trajectories) if t.actor in infos
-    )
+    tracks = with_aftermath(driven)
+    movers = (Mover(infos[t.actor], t, COLORS[k % len(COLORS)]) for k, t in enumerate(tracks) if t.actor in infos)
     return player_page.page(_view(driven, told, tuple(movers)))
 
 
@@ -42,7 +47,23 @@ def _view(driven: Drive, told: Mapping[str, Any], movers: tuple[Mover, ...]) -> 
     change = {s["actor"]: round(s["delta_v_mps"], 3) for s in (hard["first"], hard["second"])} if hard else {}
     metrics = {"drive": figures} | ({"exact": {"delta_v_mps": change}} if change else {})
     runs, name = {SCRIPT: script.trajectories}, f"{told['driver']} drives {told['ego']}"
-    return View(record, report, metrics, result, drawing_of(script.net_xml), movers, runs, name, SCRIPT)
+    shown = shown_by(script.lights, _plan_s(driven, len(movers[0].track.t_s))) if script.lights else []
+    drawing = drawing_of(script.net_xml)
+    return View(record, report, metrics, result, drawing, movers, runs, name, SCRIPT, shown, _told(told))
+
+
+def _plan_s(driven: Drive, count: int) -> Floats:
+    """(n,) time of the signals' plan: that of the others, and on behind the contact."""
+    later = driven.others_s[-1] + np.arange(1, count - len(driven.others_s) + 1) * STEP_S
+    return np.concatenate((driven.others_s, later))
+
+
+def _told(told: Mapping[str, Any]) -> dict[str, Any]:
+    """Outcome, reason and rules for the head of the page."""
+    found = [RuleFinding.model_validate(one) for one in told["rules"]]
+    rows = [{"status": f.status, "ego": f.actor == told["ego"], "text": f.words()} for f in found if f.status != "kept"]
+    ego, kept = told["ego"], any(f.status == "kept" and f.actor == told["ego"] for f in found)
+    return {"outcome": told["outcome"], "reason": told["reason"], "ego": ego, "kept": kept, "rules": rows}
 
 
 def _words(told: Mapping[str, Any]) -> str:

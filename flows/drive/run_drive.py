@@ -50,6 +50,7 @@ def drive_folder(folder: Path, order: Order) -> list[dict[str, Any]]:
     """Run a finished case's drives; the contents of their drive.json files. Raises BadInput, ConfigError."""
     script = script_of(folder, order.role_of)
     told = (folder / "trajectories.csv").read_bytes() + (folder / "road.net.xml").read_bytes()
+    told += (script.xosc or "").encode()
     return drive_script(script, order, folder / FOLDER, hashlib.sha256(told).hexdigest())
 
 

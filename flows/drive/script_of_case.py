@@ -55,9 +55,15 @@ def script_of(folder: Path, role_of: Mapping[str, str] | None = None) -> Script:
             roles=roles_of(result.get("facts", ()), role_of or {}),
             surface=_surface(result.get("facts", ())),
             net_xml=net_xml,
+            xosc=_text(folder / "scenario.xosc"),
         )
     except (OSError, ValueError, KeyError, TypeError) as fault:
         raise BadInput(f"{folder}: no finished case that can be driven ({fault}); run it again") from fault
+
+
+def _text(file: Path) -> str | None:
+    """A file's text; None where it is not there: its case was written for another simulator."""
+    return file.read_text(encoding="utf-8") if file.is_file() else None
 
 
 def roles_of(facts: Iterable[Mapping[str, Any]], given: Mapping[str, str]) -> dict[str, str]:

@@ -15,6 +15,7 @@ from flows.terminal import escape
 from sgcad_core.handover.outcome import OUTCOMES
 from sgcad_core.kinds import CRASH_ROLES
 from sgcad_core.metrics.statistics import wilson
+from sgcad_core.rules.records import RULES, WORDS
 
 WIDTH = 118
 MAX_TOLD = 10
@@ -34,8 +35,10 @@ class Tally:
             if self.failed <= MAX_TOLD:
                 self.faults.append(f"{told['case']} {told['driver']} {told['ego']}: {told['reason']}"[:300])
             return
+        rules = _broken(told)
         counts = self._counts.setdefault((told["driver"], told["role"]), Counter())
-        counts.update(["n", told["outcome"]])
+        counts.update(["n", told["outcome"], *rules])
+        counts["breaks"] += bool(rules)
         if told["as_declared"] is not None:
             counts.update({"declared": 1, "as_declared": int(told["as_declared"])})
 
@@ -58,6 +61,9 @@ def show(console: Console, tally: Tally) -> None:
     """Print the table and the failed drives."""
     console.width = max(console.width, WIDTH)
     console.print(_table(tally.rows()))
+    for row in tally.rows():
+        if told := _told_rules(row):
+            console.print(escape(f"{row['driver']}, {row['role']}: {told}"), soft_wrap=True)
     for line in tally.faults:
         console.print(escape(line), soft_wrap=True)
     if tally.failed > len(tally.faults):
@@ -71,21 +77,39 @@ def _row(driver: str, role: str, counts: Mapping[str, int]) -> dict[str, Any]:
     for name in ("avoided", "mitigated"):
         low, high = wilson(row[name], n)
         row |= {f"{name}_share": row[name] / n, f"{name}_low": low, f"{name}_high": high}
+    row |= {"breaks": counts.get("breaks", 0)} | {rule: counts.get(rule, 0) for rule in RULES}
     return row | {"as_declared": counts.get("as_declared", 0), "declared": counts.get("declared", 0)}
 
 
 def _table(found: Sequence[Mapping[str, Any]]) -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 2, 0, 0))
     table.add_column("driver", overflow="fold", min_width=10)
-    for name in ("role", "n", "avoided", "95 %", "mitigated", "95 %", "unchanged", "worse", "lost", "as declared"):
+    for name in ("role", "n", "avoided", "95 %", "mitigated", "95 %", "unchanged", "worse", "lost", "breaks a rule"):
         table.add_column(name, justify="right", no_wrap=True)
     for row in found:
         table.add_row(
             escape(row["driver"]), row["role"], str(row["n"]),
             *(cell for name in ("avoided", "mitigated") for cell in _share(row, name)),
-            *(str(row[name]) for name in ("unchanged", "worse", "lost")), f"{row['as_declared']}/{row['declared']}",
+            *(str(row[name]) for name in ("unchanged", "worse", "lost")),
+            f"{row['breaks']} ({100 * row['breaks'] / row['n']:.0f} %)",
         )  # fmt: skip
     return table
+
+
+def _told_rules(row: Mapping[str, Any]) -> str:
+    """Which rules the drives of a row broke, the commonest first; "" for none."""
+    most = sorted((r for r in RULES if row[r]), key=lambda r: -row[r])
+    return ", ".join(f"{WORDS[r]} {row[r]}" for r in most)
+
+
+def _broken(told: Mapping[str, Any]) -> list[str]:
+    """The rules that the ego of a drive broke."""
+    return list(dict.fromkeys(f["rule"] for f in told.get("rules", ()) if broken_of(f, told["ego"])))
+
+
+def broken_of(finding: Mapping[str, Any], ego: str) -> bool:
+    """Whether a finding in drive.json says that the ego broke a rule."""
+    return bool(finding["status"] == "broken" and finding["actor"] == ego)
 
 
 def _share(row: Mapping[str, Any], name: str) -> tuple[str, str]:
@@ -101,9 +125,9 @@ HARDNESS = ("delta_v_mps", "scripted_delta_v_mps", "risk", "scripted_risk")
 def as_csv(out: TextIO, told: Iterable[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
     """Write one line per drive while the drives pass through."""
     writer = csv.writer(out)
-    writer.writerow([*NAMES, *HARDNESS])
+    writer.writerow([*NAMES, *HARDNESS, "rules"])
     for t in told:
-        writer.writerow([*(t.get(name) for name in NAMES), *_hardness(t)])
+        writer.writerow([*(t.get(name) for name in NAMES), *_hardness(t), " ".join(_broken(t))])
         yield t
 
 

@@ -98,6 +98,8 @@
     }
     ink.strokeStyle = COLOR.edge; ink.lineWidth = 0.22; ink.lineCap = "butt"; ink.stroke();
   }
+  const LAMPS = { red: [0], "red-yellow": [0, 1], yellow: [1], flashing: [1], green: [2] };
+  const showing = (edge) => ((data.signals || {})[edge] || []).reduce((state, [from, next]) => (from <= now ? next : state), "");
   function drawMarks() {
     const big = Math.max(1, 9 / (box.scale * 1.1));        // a sign is at least some pixels high
     for (const [kind, x, y, heading, directions] of data.drawing.marks || []) {
@@ -110,7 +112,8 @@
           ink.closePath(); ink.fillStyle = "#c1121f"; ink.fill(); ink.stroke();
         } else {
           ink.roundRect(-1.1, -0.45, 2.2, 0.9, 0.25); ink.fillStyle = "#1d2329"; ink.fill(); ink.stroke();
-          ["#e5383b", "#ffb703", "#2dc653"].forEach((c, i) => { ink.beginPath(); ink.arc(0.68 - 0.68 * i, 0, 0.24, 0, 7); ink.fillStyle = c; ink.fill(); });
+          const lamp = LAMPS[showing(directions)] || [];                            // without a plan all three stay dark
+          ["#ff4d4f", "#ffc533", "#38d66b"].forEach((c, i) => { ink.beginPath(); ink.arc(0.68 - 0.68 * i, 0, 0.24, 0, 7); ink.fillStyle = lamp.includes(i) ? c : "#4a535b"; ink.fill(); });
         }
       }
       ink.restore();
@@ -191,7 +194,9 @@
     ink.restore();
   }
   function labelPlace(actor) {                           // beside the box, away from the others where they are near
-    const p = pose(actor, now), [x, y] = toScreen(p.x, p.y), lift = Math.min(actor.length_m * box.scale * 0.5, 40) + 16;
+    const p = pose(actor, now), [x, y] = toScreen(p.x, p.y), reach = actor.length_m * box.scale * 0.5;
+    const met = pane.actors.some((one) => { const q = pose(one, now); return one !== actor && Math.hypot(p.x - q.x, p.y - q.y) < actor.length_m + one.length_m; });
+    const lift = (met ? 1.6 * Math.min(reach, 60) : Math.min(reach, 40)) + 16;   // further off where two meet: the contact stays free
     let dx = 0, dy = 0;
     for (const one of pane.actors) {
       const q = pose(one, now), [u, v] = toScreen(q.x, q.y), gap = Math.hypot(x - u, y - v);
@@ -203,7 +208,8 @@
   function drawLabel(actor) {
     const [x, y] = labelPlace(actor);
     ink.font = "700 12px system-ui, sans-serif"; ink.textAlign = "center"; ink.textBaseline = "middle";
-    const wide = ink.measureText(actor.id).width + 12;
+    const wide = ink.measureText(actor.id).width + 12, p = pose(actor, now), [u, v] = toScreen(p.x, p.y);
+    ink.strokeStyle = actor.color; ink.lineWidth = 1; ink.beginPath(); ink.moveTo(u, v); ink.lineTo(x, y); ink.stroke();
     ink.fillStyle = actor.color; ink.strokeStyle = "#fff"; ink.lineWidth = 1.5;
     ink.beginPath(); ink.roundRect(x - wide / 2, y - 9, wide, 18, 9); ink.fill(); ink.stroke();
     ink.fillStyle = "#fff"; ink.fillText(actor.id, x, y + 0.5);

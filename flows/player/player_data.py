@@ -12,7 +12,9 @@ import numpy as np
 
 from flows.player.player_highlights import facts_by_thing, road_along, road_axes, sentences_of
 from flows.player.road_shapes import Drawing, drawing_of
+from flows.player.signals_shown import SignalShown, signals_shown
 from sgcad_core.case.records import ActorInfo, CrashReport, Floats, Scenario, Trajectory
+from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.geometry.plane import Box, overlap_polygon
 from sgcad_core.metrics.conflict import box_distance, time_to_collision
 from sgcad_core.metrics.swept_cells import Track
@@ -50,6 +52,9 @@ class View:
     """Name of this run beside another one."""
     over: str = ""
     """Name of the run that is shown over this one at the start."""
+    signals: Sequence[SignalShown] = ()
+    drive: Mapping[str, Any] | None = None
+    """Of a drive: its outcome with the reason, and the sentences of its rules."""
 
     @staticmethod
     def of(
@@ -69,7 +74,8 @@ class View:
             for k, track in enumerate(execution.trajectories)
             if track.actor in infos
         )
-        return View(record, report, metrics, result, drawing_of(network.net_xml), movers, runs or {})
+        shown = signals_shown(parse_net(network.net_xml), scenario.xosc, movers[0].track.t_s if movers else np.zeros(0))
+        return View(record, report, metrics, result, drawing_of(network.net_xml), movers, runs or {}, signals=shown)
 
     def contact_point(self) -> tuple[float, float] | None:
         """Middle of the first overlap, metres; None if nothing touched."""
@@ -118,6 +124,11 @@ class View:
         pose = float(track.x_m[k]), float(track.y_m[k]), float(track.heading_rad[k])
         return Box(*pose, mover.info.length_m, mover.info.width_m)
 
+    def _account(self) -> Sequence[Mapping[str, Any]]:
+        """The items of the account."""
+        items: Sequence[Mapping[str, Any]] = (self.result.get("account") or {}).get("items", ())
+        return items
+
     def as_json(self) -> dict[str, Any]:
         """The data for the page's script, rounded to centimeters and milliradians."""
         contact = dict(self.result["collision"]["observed"] or {})
@@ -134,6 +145,8 @@ class View:
             "redactions": redactions(self.report.places),
             "network": self.result["network"],
             "drawing": _drawing(self.drawing, road_axes(self.result.get("facts", ()))),
+            "signals": {s.edge: s.changes for s in self.signals},
+            "drive": self.drive,
             "actors": [_actor(mover) for mover in self.movers],
             "t_s": _rounded(self.movers[0].track.t_s, 2) if self.movers else [],
             "near": self._nearness(),
@@ -145,7 +158,7 @@ class View:
             "over": self.over,
             "conditions": _conditions(self.record.scenario),
             "narrative": self.report.narrative,
-            "sentences": sentences_of(self.report, self.result.get("facts", ())),
+            "sentences": sentences_of(self.report, self.result.get("facts", ()), self._account()),
             "facts": facts_by_thing(self.result.get("facts", ())),
             "diagrams": [_data_url(d.png) for d in self.report.diagrams[:DIAGRAM_LIMIT]],
             "metrics": self.metrics,
@@ -188,7 +201,8 @@ def _drawing(drawing: Drawing, axes: Mapping[str, float]) -> dict[str, Any]:
         "cones": _rounded(drawing.cones.ravel(), 2),
         "gores": [_rounded(gore.ravel(), 2) for gore in drawing.gores],
         "marks": [
-            [m.kind, round(m.x_m, 2), round(m.y_m, 2), round(m.heading_rad, 3), m.directions] for m in drawing.marks
+            [m.kind, round(m.x_m, 2), round(m.y_m, 2), round(m.heading_rad, 3), m.directions or m.edge]
+            for m in drawing.marks
         ],
     }
 

@@ -28,13 +28,40 @@
     required_2_s_before_mps2: "constant braking from 2 s before the contact that would have avoided it",
     steer_by_s: "last instant at which steering alone would have avoided the contact",
   };
+  const CALLED = {                                       // names for people; the keys are those of metrics.json
+    collision_probability: "share of time in contact", near_miss_probability: "share of time in a near miss", collision: "contact",
+    collision_speed_mps: "closing speed at the contact", time_to_collision_s: "time to collision (TTC), least",
+    post_encroachment_time_s: "post-encroachment time (PET)",
+    required_deceleration_mps2: "braking needed, most", minimum_distance_m: "distance, least", interaction_intensity_mean: "interaction intensity, mean",
+    interaction_intensity_max: "interaction intensity, most", average_displacement_error_m: "prediction error, mean", final_displacement_error_m: "prediction error at the end",
+    emergency_score: "emergency score", emergency_level: "emergency level", delta_v_mps: "change of velocity (delta-v)", delta_v_worst_mps: "change of velocity, the larger",
+    contact_energy_j: "energy absorbed", fatality_risk: "risk of a fatality", time_exposed_ttc_s: "time with TTC under 1.5 s", time_integrated_ttc_s2: "TTC deficit, integrated",
+    time_exposed_drac_s: "time in which hard braking was needed", braking_s_before_s: "braking began before the contact", ttc_at_braking_s: "TTC as braking began",
+    brake_by_s: "last moment to brake, before the contact", brake_by_m: "last place to brake, before the contact", steer_by_s: "last moment to steer, before the contact",
+    required_2_s_before_mps2: "steady braking that avoids it, from 2 s before",
+  };
   for (const s of ["0_5", "1", "2"]) {
-    EXPLAIN[`ttc_${s}_s_before_s`] = `TTC ${s.replace("_", ".")} s before the contact`;
-    EXPLAIN[`drac_${s}_s_before_mps2`] = `braking needed ${s.replace("_", ".")} s before the contact`;
+    CALLED[`ttc_${s}_s_before_s`] = `TTC ${s.replace("_", ".")} s before the contact`;
+    CALLED[`drac_${s}_s_before_mps2`] = `braking needed ${s.replace("_", ".")} s before the contact`;
+    EXPLAIN[`ttc_${s}_s_before_s`] = "time until the outlines would touch at the velocities of that instant";
+    EXPLAIN[`drac_${s}_s_before_mps2`] = "constant braking that would have avoided the contact from that instant (DRAC)";
+  }
+  const ENDS = [["_mps2", "m/s²"], ["_s2", "s²"], ["_mps", "m/s"], ["_m", "m"], ["_s", "s"], ["_j", "J"]];
+  const HARDEST_MPS2 = 12;                               // no vehicle of the kinds' records brakes harder
+  const unitOf = (key) => (ENDS.find(([end]) => key.endsWith(end)) || ["", ""])[1];
+  const called = (key) => CALLED[key] || words(key.replace(/_(mps2|mps|s2|s|m|j)$/, ""));
+  const plainly = (v) => typeof v === "number" ? v.toFixed(Math.abs(v) >= 100 ? 0 : Math.abs(v) >= 10 ? 1 : 2) : show(v);
+  function figure(key, v) {                              // with its unit; braking that nothing can do in words
+    if (v && typeof v === "object") return Object.entries(v).map(([k, one]) => `${k} ${figure(key, one)}`).join(", ");
+    if (typeof v !== "number") return show(v);
+    const [unit] = [unitOf(key)];
+    if (key === "contact_energy_j") return `${(v / 1000).toFixed(1)} kJ`;
+    if (unit === "m/s²" && v > HARDEST_MPS2) return `over ${HARDEST_MPS2} ${unit}: braking cannot`;
+    if (/probability|risk/.test(key)) return `${(100 * v).toFixed(v < 0.1 ? 2 : 0)} %`;
+    return unit ? `${plainly(v)} ${unit}` : plainly(v);
   }
 
   // ---------------------------------------------------------------- report, verdict, account, tables
-  const unit = (name) => name.replace(/_s$/, " (s)").replace(/_mps$/, " (m/s)").replace(/_m$/, " (m)");
   const seen = contact && declared && contact.actor !== declared.striker && contact.other === declared.striker
     ? [contact.other, contact.other_area, contact.actor, contact.actor_area] : contact && [contact.actor, contact.actor_area, contact.other, contact.other_area];
   function tell(place, text, at) {                       // the narrative, its replaced words marked, its vehicles in their colors
@@ -64,7 +91,8 @@
   const sides = (a, aSide, b, bSide) => `${a} ${aSide} → ${b} ${bSide}`;
 
   $("case").textContent = data.case;
-  $("about").textContent = `config ${data.config} · ${data.status} · attempts: road ${data.attempts.road}, scenario ${data.attempts.scenario} · ${Object.values(data.seconds).reduce((a, b) => a + b, 0).toFixed(1)} s`;
+  const driven = data.drive, CALLED_DRIVE = { braked_s: "braking began before the contact or the closest approach", braked_at_ttc_s: "TTC as braking began", hardest_mps2: "hardest braking", closest_m: "distance, least", least_ttc_s: "time to collision, least", pet_s: "post-encroachment time (PET)" };
+  $("about").textContent = driven ? data.config : `config ${data.config} · ${data.status} · attempts: road ${data.attempts.road}, scenario ${data.attempts.scenario} · ${Object.values(data.seconds).reduce((a, b) => a + b, 0).toFixed(1)} s`;
   const account = data.account && data.account.verdict !== "none" ? data.account : null;
   if (account) {                                         // what is told and there, told and lacking, assumed: first thing
     const whole = account.verdict === "whole", disputed = data.disagreements || [], of = (kind) => account.items.filter((i) => i.kind === kind);
@@ -79,26 +107,38 @@
     }
     if (account.assumed) $("assumed").textContent = `Assumed: ${of("assumed").map((i) => i.text).join("; ")}.`;
   }
-  const verdict = $("verdict");
+  const verdict = $("verdict"), surely = !account || account.verdict === "whole";   // nothing is green over something unread
+  const judged = (good) => (good ? (surely ? "good" : "") : "bad"), as = (good) => (good ? " · as declared ✓" : " · not as declared ✗");
   if (contact) {
-    verdict.textContent = `${sides(...seen)} at ${contact.t_s.toFixed(2)} s` + (declared ? (data.collision.realised ? " · as declared ✓" : " · not as declared ✗") : "");
-    verdict.className = !declared ? "" : data.collision.realised ? "good" : "bad";
-    $("mark").style.left = `calc(8px + (100% - 16px) * ${contactStep / Math.max(last, 1)})`;
+    verdict.textContent = `${sides(...seen)} at ${contact.t_s.toFixed(2)} s` + (declared && !driven ? as(data.collision.realised) : "");
+    verdict.className = !declared ? "" : judged(data.collision.realised);
   } else if (closest) {
-    verdict.textContent = `near crash: ${closest.actor} and ${closest.other} closest ${closest.clearance_m.toFixed(1)} m at ${closest.t_s.toFixed(1)} s` + (near.realised ? " · as declared ✓" : " · not as declared ✗");
-    verdict.className = near.realised ? "good" : "bad";
-    $("mark").style.left = `calc(8px + (100% - 16px) * ${momentStep / Math.max(last, 1)})`;
+    verdict.textContent = `near crash: ${closest.actor} and ${closest.other} closest ${closest.clearance_m.toFixed(1)} m at ${closest.t_s.toFixed(1)} s` + as(near.realised);
+    verdict.className = judged(near.realised);
   } else {
     verdict.textContent = declared ? "the declared contact did not happen ✗" : "no contact"; verdict.className = declared ? "bad" : "";
-    $("mark").hidden = true;
+  }
+  if (moment) $("mark").style.left = `calc(8px + (100% - 16px) * ${momentStep / Math.max(last, 1)})`; else $("mark").hidden = true;
+  if (driven) {                                          // of a drive: did it avoid the crash, and what rules did it cost
+    const own = driven.rules.filter((r) => r.ego && r.status === "broken");
+    verdict.textContent = `${driven.outcome}: ${driven.reason}` + (own.length ? ` · breaks ${own.length === 1 ? "a rule" : `${own.length} rules`}` : "");
+    verdict.className = driven.outcome === "avoided" ? (own.length ? "" : "good") : ["unchanged", "worse"].includes(driven.outcome) ? "bad" : "";
+    $("rulecard").hidden = false;
+    for (const r of driven.rules) row($("rules"), [make("td", r.status, { className: r.status === "broken" ? "no" : "" }), r.text]);
+    if (!own.length) row($("rules"), [make("td", "kept"), driven.kept ? `${driven.ego}: every rule that the map tells of` : "the map tells of no rule here"]);
+    $("narrative").parentElement.querySelector(".hint").hidden = true; $("narrative").parentElement.firstElementChild.textContent = "What happened";
   }
   for (const a of data.actors) { const line = make("span"), id = make("b", a.id); id.style.background = a.color; line.append(id, make("i", "", { style: "font-style:normal" })); line.tabIndex = 0; pointable(line, [a.id]); $("legend").append(line); }
   for (const url of data.diagrams) { const img = make("img", null, { src: url, alt: "Crash diagram of the report" }); img.onclick = () => img.classList.toggle("large"); $("diagrams").append(img); $("diagrams").hidden = false; }
+  const MARKS = { contradicts: "contradicted", unread: "not read", lacks: "not in the scenario" };
+  $("marks").hidden = !data.sentences.some((s) => s.mark);
   let read = 0;
   data.sentences.forEach((s, k) => {
     tell($("narrative"), data.narrative.slice(read, s.start), read);
     const span = pointable(make("span", "", { className: "told", tabIndex: 0 }), s.things, s);
+    if (s.mark && s.mark !== "read") { span.classList.add(s.mark); span.title = MARKS[s.mark]; }
     span.dataset.k = k; tell(span, data.narrative.slice(s.start, s.end), s.start); $("narrative").append(span);
+    if (s.mark && s.mark !== "read") span.append(make("sup", MARKS[s.mark], { className: "marked" }));
     read = s.end;
   });
   tell($("narrative"), data.narrative.slice(read), read);
@@ -109,8 +149,8 @@
   for (const a of data.actors) row($("actors"), [pill(a), a.type, a.maneuver, `${a.length_m.toFixed(1)} × ${a.width_m.toFixed(1)} m`]);
   fillSpeeds();
   $("conditions").textContent = Object.entries(data.conditions).map(([k, v]) => `${k}: ${words(v)}`).join(" · ");
-  row($("collision"), ["declared", declared ? sides(declared.striker, declared.striker_area, declared.struck, declared.struck_area) : "none"]);
-  row($("collision"), ["observed", contact ? sides(...seen) : "none"]);
+  row($("collision"), [driven ? "the script's" : "declared", declared ? sides(declared.striker, declared.striker_area, declared.struck, declared.struck_area) : "none"]);
+  row($("collision"), [driven ? "in this drive" : "observed", contact ? sides(...seen) : "none"]);
   if (contact) row($("collision"), ["first contact", `${contact.t_s.toFixed(2)} s`]);
   if (near) {
     const told = near.declared, c = told.conflict;
@@ -120,23 +160,28 @@
     if (closest) row($("collision"), ["closest approach", `${closest.clearance_m.toFixed(2)} m at ${closest.t_s.toFixed(2)} s`]);
   }
   const realised = near ? near.realised : data.collision.realised;
-  row($("collision"), ["realised", make("td", realised ? "yes" : "no", { className: realised ? "yes" : "no" })]);
+  if (!driven) row($("collision"), ["realised", make("td", realised ? "yes" : "no", { className: realised ? (surely ? "yes" : "") : "no" })]);
   const net = data.network || {};
   for (const [k, v] of Object.entries(net)) if (k !== "segments") row($("network"), [words(k), v]);
   if (net.segments) row($("network"), ["roads (lanes →/←)", net.segments.map((s) => `${s.id} ${s.lanes_forward}/${s.lanes_backward}`).join(", ")]);
   const paper = data.metrics.paper || {}, exact = data.metrics.exact || {};
-  row($("metrics"), ["", make("th", "paper's formula", { className: "n" }), make("th", "exact", { className: "n" })], true);
+  const readings = driven ? [["", exact]] : [["paper's formula", paper], ["exact", exact]];
+  row($("metrics"), ["", ...readings.map(([name]) => make("th", name, { className: "n" }))], true);
   function explained(key) {                              // the figure's name, and under it what it is in a line
-    const td = make("td", words(unit(key)));
+    const td = make("td", called(key));
     if (EXPLAIN[key]) td.append(make("small", EXPLAIN[key]));
     return td;
   }
-  for (const key of new Set([...Object.keys(paper), ...Object.keys(exact)])) row($("metrics"), [explained(key), ...[paper[key], exact[key]].map((v) => make("td", flatly(v), { className: "n" }))]);
+  const measures = [...new Set([...Object.keys(paper), ...Object.keys(exact)])].filter((key) => !key.endsWith("_reason"));
+  const because = (key, of) => of[key] === null && of[key.replace(/_s$/, "_reason")];     // why there is no value
+  if (driven) for (const [k, v] of Object.entries(data.metrics.drive || {})) if (CALLED_DRIVE[k]) row($("metrics"), [CALLED_DRIVE[k], make("td", figure(k, v), { className: "n" })]);
+  for (const key of measures) row($("metrics"), [explained(key), ...readings.map(([, of]) => make("td", of[key] === undefined ? "–" : because(key, of) || figure(key, of[key]), { className: "n" }))]);
   for (const [field, nats] of Object.entries(data.grounding || {})) {
     const chip = make("span", `${field}  ${nats.toFixed(2)}`), strength = Math.min(Math.abs(nats) / 4, 1);
     chip.style.background = nats >= 0 ? `rgba(27,127,77,${0.1 + 0.35 * strength})` : `rgba(196,32,58,${0.1 + 0.35 * strength})`;
     $("grounding").append(chip); $("groundcard").hidden = false;
   }
+  for (const card of document.querySelectorAll(".card")) if (!card.hidden) card.hidden = ![...card.querySelectorAll("table, div")].some((part) => part.childElementCount);
   window.addEventListener("message", (e) => {              // the page around it points at something
     if (seated && e.source === parent && e.data?.sgcad === "point" && Array.isArray(e.data.things)) point(e.data.things.map(String), undefined, true);
   });

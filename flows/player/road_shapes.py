@@ -6,7 +6,8 @@ Read from SUMO's .net.xml; meters, x east, y north; no pixels and no colors.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -20,10 +21,12 @@ from sgcad_core.geometry.plane import offset_polyline
 from sgcad_core.kinds import UNPAINTED
 from sgcad_core.roads.closures import cones
 from sgcad_core.roads.gores import gores
-from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
+from sgcad_core.roads.lane_graph import ROAD_WORKS, Edge, Lane, LaneGraph
 
 Floats = NDArray[np.float64]
 Style = Literal["edge", "lane", "center", "stop"]
+SIDEWALK = "sidewalk"
+"""Type of a lane that has a curb and no edge line."""
 HELD = set("sZw")
 """SUMO's connection states that make traffic stop: stop, zipper excluded by its node, all-way stop."""
 
@@ -54,6 +57,8 @@ class Mark:
     y_m: float
     heading_rad: float
     directions: str = ""
+    edge: str = ""
+    """The approach that a signal or a sign stands at."""
 
 
 @dataclass(frozen=True)
@@ -113,8 +118,14 @@ def _edge_lines(edge: Edge, graph: LaneGraph) -> list[Line]:
     if edge.parameters.get(KIND) in UNPAINTED:
         return []
     right, left = edge.lanes[0], edge.lanes[-1]
-    lines = [Line(_side(right, -1), "edge"), Line(_side(left, +1), "center")]
-    return lines + [Line(_side(lane, +1), "lane") for lane in edge.lanes[:-1]]
+    lines = [] if right.type == SIDEWALK else [Line(_side(right, -1), "edge")]
+    lines.append(Line(_side(left, +1), "center"))
+    return lines + [Line(_side(a, +1), _between(a, b)) for a, b in pairwise(edge.lanes)]
+
+
+def _between(right: Lane, left: Lane) -> Style:
+    """The line between two lanes: dashed between lanes for cars, whole beside a shoulder, a sidewalk and the like."""
+    return "edge" if {right.type, left.type} - {"", ROAD_WORKS} else "lane"
 
 
 def _side(lane: Lane, side: int) -> Floats:
@@ -177,7 +188,8 @@ def _marks(root: Any, graph: LaneGraph) -> Iterator[Mark]:
     for source, lanes in ways.items():
         edge = graph.edges[source]
         if source in control and edge.car_lanes:
-            yield _mark(control[source], edge.car_lanes[0], 0.5, edge.car_lanes[0].width_m / 2 + BESIDE_M)
+            beside = edge.car_lanes[0].width_m / 2 + BESIDE_M
+            yield replace(_mark(control[source], edge.car_lanes[0], 0.5, beside), edge=source)
         cars = [lane for lane in edge.car_lanes if len(edge.car_lanes) >= ARROW_LANES and lane.index in lanes]
         if set().union(*lanes.values()) - {"s"}:
             yield from (_mark("arrow", lane, ARROW_M, 0.0, "".join(sorted(lanes[lane.index]))) for lane in cars)

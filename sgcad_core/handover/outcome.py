@@ -22,9 +22,11 @@ from sgcad_core.case.records import Floats, ObservedContact, Record, Trajectory
 from sgcad_core.execution.contact import realised
 from sgcad_core.geometry.plane import arc_lengths, box_gaps
 from sgcad_core.handover.drive import Drive
+from sgcad_core.handover.rules_of_drive import rules_of_drive
 from sgcad_core.handover.severity import Severity, severity
 from sgcad_core.metrics import conflict, displacement
 from sgcad_core.metrics.swept_cells import Track
+from sgcad_core.rules.records import RuleFinding
 
 Outcome = Literal["avoided", "mitigated", "unchanged", "worse", "lost"]
 OUTCOMES: tuple[Outcome, ...] = ("avoided", "mitigated", "unchanged", "worse", "lost")
@@ -43,6 +45,7 @@ class Margins(Record):
 class DriveResult(Record):
     """The result of a drive: the figures of tables and drive.json."""
 
+    ego: str
     outcome: Outcome
     reason: str
     as_declared: bool | None
@@ -62,6 +65,8 @@ class DriveResult(Record):
     pet_reason: str
     lag_s: float
     elsewhere: ObservedContact | None
+    rules: tuple[RuleFinding, ...] = ()
+    """Traffic rules, of every actor in the drive up to its first contact."""
 
 
 def judge_drive(drive: Drive, margins: Margins | None = None) -> DriveResult:
@@ -77,14 +82,14 @@ def judge_drive(drive: Drive, margins: Margins | None = None) -> DriveResult:
     until = drive.contact.t_s if drive.contact else float(drive.ego.t_s[nearest])
     seen = near.ttc_s[onset] if onset is not None else math.inf
     return DriveResult(
-        outcome=outcome, reason=reason,
+        ego=staging.ego, outcome=outcome, reason=reason,
         as_declared=realised(script.declared, drive.contact) if script.declared else None,
         contact=drive.contact, severity=now, scripted=scripted,
         braked_s=None if onset is None else round(until - onset * STEP_S, 3),
         braked_at_ttc_s=_finite(seen), hardest_mps2=round(float(max(-drive.accelerations.min(initial=0.0), 0.0)), 3),
         closest_m=round(float(near.clearance_m[nearest]), 3), least_ttc_s=_finite(float(near.ttc_s.min())),
         pet_s=near.pet.seconds, pet_reason=near.pet.reason,
-        lag_s=round(drive.clock.lag_s, 3), elsewhere=drive.elsewhere,
+        lag_s=round(drive.clock.lag_s, 3), elsewhere=drive.elsewhere, rules=rules_of_drive(drive),
     )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from sgcad_core.handover.lane_following import Start, continued_line
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.records.specs import Contact, Surface
 from sgcad_core.roads.lane_graph import LaneGraph
+from sgcad_core.rules.lights import Lights, lights_of
 
 BEYOND_S = 15.0
 """Time for which lines go on after the contact."""
@@ -48,6 +49,13 @@ class Script:
     net_xml: str = ""
     grip: float | None = None
     """Peak friction, where it is given; else that of the surface."""
+    xosc: str | None = field(default=None, repr=False)
+    """The scenario file: it has the plan of the signals."""
+
+    @cached_property
+    def lights(self) -> Lights | None:
+        """What the signals show; None where the scenario has no plan of them."""
+        return lights_of(self.graph, self.xosc)
 
     @property
     def sizes(self) -> dict[str, Size]:

@@ -17,6 +17,7 @@ from flows.desk.views.attempts import Attempt, attempts_of
 from flows.desk.views.field_words import name_of, shown
 from flows.desk.views.folder_files import FILES, diagrams_of, is_there, odd_files, text_of
 from flows.desk.views.list_rows import account_counts, contact_of, disagreements, doubts_of, notes_of
+from flows.player.player_highlights import MARK_WORDS, MARKS
 
 _DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
 
@@ -28,6 +29,13 @@ class Piece:
     text: str
     number: int = -1
     things: tuple[str, ...] = ()
+    mark: str = ""
+    """What the account says against it (`player_highlights.MARKS`); "" for nothing."""
+
+    @property
+    def marked(self) -> str:
+        """The mark in words."""
+        return MARK_WORDS.get(self.mark, "")
 
 
 @dataclass(frozen=True)
@@ -96,7 +104,7 @@ def page_of(folder: Path, result: Mapping[str, Any]) -> CasePage:
     facts = list(result.get("facts") or ())
     spans = spans_of(folder, result)
     narrative = text_of(folder, "report.txt")
-    pieces, numbers = pieces_of(narrative, spans, facts)
+    pieces, numbers = pieces_of(narrative, spans, facts, (result.get("account") or {}).get("items", ()))
     return CasePage(
         pieces=pieces, groups=tuple(groups_of(facts, numbers, doubts_of(result))), counts=account_counts(result),
         account=account_of(result, numbers), notes=tuple(_note(note, numbers) for note in notes_of(result)),
@@ -138,10 +146,15 @@ def spans_of(folder: Path, result: Mapping[str, Any]) -> dict[int, tuple[int, in
 
 
 def pieces_of(
-    narrative: str, spans: Mapping[int, tuple[int, int]], facts: Iterable[Mapping[str, Any]]
+    narrative: str,
+    spans: Mapping[int, tuple[int, int]],
+    facts: Iterable[Mapping[str, Any]],
+    items: Iterable[Mapping[str, Any]] = (),
 ) -> tuple[tuple[Piece, ...], dict[int, int]]:
-    """The narrative cut into sentences that tell facts and what stands between; the number of each by its begin."""
-    things: dict[int, dict[str, None]] = {}
+    """The narrative cut into sentences that tell facts, or that the account has something against, and what stands
+    between; the number of each by its begin."""
+    marks = _marks(spans, items)
+    things: dict[int, dict[str, None]] = {begin: {} for begin in marks}
     for fact in facts:
         if fact.get("start") in spans:
             things.setdefault(fact["start"], {}).update(dict.fromkeys([thing_of(fact["field"])]))
@@ -152,9 +165,20 @@ def pieces_of(
             continue
         numbers[begin] = len(numbers)
         pieces += [Piece(narrative[at:start])] if start > at else []
-        pieces.append(Piece(narrative[start:end], numbers[begin], tuple(filter(None, told))))
+        pieces.append(Piece(narrative[start:end], numbers[begin], tuple(filter(None, told)), marks.get(begin, "")))
         at = end
     return (*pieces, Piece(narrative[at:])), numbers
+
+
+def _marks(spans: Mapping[int, tuple[int, int]], items: Iterable[Mapping[str, Any]]) -> dict[int, str]:
+    """By the begin of a sentence the gravest thing that the account says of it."""
+    found: dict[int, str] = {}
+    for item in items:
+        within = [begin for begin in spans if item.get("start") is not None and begin <= item["start"]]
+        if item["kind"] in MARKS and within:
+            begin = max(within)
+            found[begin] = min(found.get(begin, item["kind"]), item["kind"], key=MARKS.index)
+    return found
 
 
 # ------------------------------------------------------------------ facts

@@ -87,6 +87,10 @@ def _trust(result: Mapping[str, Any], lacking: int, doubts: int) -> Trust:
 
 
 # ------------------------------------------------------------------ parts of a result
+_OPEN = "no posted speed limit is told"
+"""Words of the road writers' note on roads without a told limit; the assumed limit stands in the account."""
+
+
 def account_counts(result: Mapping[str, Any]) -> dict[str, int]:
     """told, has, lacking, assumed; of results without an account facts are counted, and what lacks is not known."""
     if account := result.get("account"):
@@ -103,8 +107,12 @@ def notes_of(result: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def doubts_of(result: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Notes that ask for a look: what a validator remarked, what was held back or lies beyond what is read."""
-    return [note for note in notes_of(result) if note["kind"] in ("finding", "held", "judge", "limit")]
+    """Notes that ask for a look: what a validator remarked, what was held back or lies beyond what is read.
+
+    What the account lists as assumed is no doubt: the player calls such a case right as far as told, too.
+    """
+    kinds = ("finding", "held", "judge", "limit")
+    return [note for note in notes_of(result) if note["kind"] in kinds and _OPEN not in str(note["text"])]
 
 
 def disagreements(facts: Iterable[Mapping[str, Any]]) -> dict[str, dict[str, Any]]:

@@ -242,6 +242,13 @@ def _controllers(graph: LaneGraph, heads: Sequence[tuple[Signal, str, str]]) -> 
         yield Controller(str(number), f"{program} {number}", node, program, names, phases)
 
 
+def shown_in_turn(graph: LaneGraph, link: Connection) -> tuple[str, ...]:
+    """What the signal of a connection shows in each phase of the map's own program; empty without a program."""
+    program = graph.programs.get(link.light)
+    phases = program.phases if program else ()
+    return tuple(_SHOWN.get(p.states[link.link], "off") for p in phases if 0 <= link.link < len(p.states))
+
+
 def link_node(graph: LaneGraph, link: Connection) -> str:
     """The node that a connection crosses."""
     return graph.edges[link.from_edge].to_node

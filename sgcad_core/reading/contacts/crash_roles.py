@@ -46,8 +46,9 @@ class RoleEvidence(NamedTuple):
 def role_facts(builder: FactBuilder, statements: Sequence[Statement], crash: CrashFacts) -> Iterator[Fact]:
     """`vehicles.<id>.role` (and `others.<id>.role`) of every actor in the crash."""
     ids = [v.id for v in crash.vehicles] + [o.id for o in crash.others]
-    signs = [*_told_signs(statements, {v.id for v in crash.vehicles}), *_maneuver_signs(crash)]
     pair = _pair(crash)
+    known = {v.id for v in crash.vehicles}
+    signs = [*_told_signs(statements, known), *_signs_on_foot(statements, known, pair or ()), *_maneuver_signs(crash)]
     first = _initiator(pair, signs) if pair else None
     for name in ids:
         field = f"{'vehicles' if name.startswith('V') else 'others'}.{name}.role"
@@ -96,6 +97,19 @@ def _told_signs(statements: Sequence[Statement], known: set[str]) -> Iterator[Ro
         owner = named[0] if named else sentence.subject
         if owner in known and owner is not None:
             yield from _of_sentence(sentence, owner)
+
+
+def _signs_on_foot(statements: Sequence[Statement], known: set[str], pair: Sequence[str]) -> Iterator[RoleEvidence]:
+    """What the one of the pair that is no vehicle (a person, a cyclist, an animal) does against the right of way.
+
+    In statements it has its noun, or a number that no vehicle has.
+    """
+    others = [name for name in pair if name not in known]
+    for sentence in statements if len(others) == 1 else ():
+        found = rule("crash_roles.stepped_out").search(sentence.text.lower())
+        if found and found["who"].upper() not in known:
+            source = Source(sentence.number, sentence.text[:60], "crash_roles.stepped_out")
+            yield RoleEvidence(others[0], _BROKE, "crash_roles.stepped_out", source)
 
 
 def _of_sentence(sentence: Statement, owner: str) -> Iterator[RoleEvidence]:

@@ -59,7 +59,7 @@ def test_in_the_drive_braking_shows_as_another_speed_than_the_scripts(tab, folde
     told = [json.loads(f.read_text()) for f in folder.glob("drive/aeb/*/drive.json")]
     braked = next(t for t in told if t["braked_s"])
     tab.open(f"file://{folder / 'drive' / 'aeb' / braked['ego'] / 'drive.html'}")
-    tab.key("End")
+    tab.key("c")
     drive, script = tab.run(CAPTIONS)[0].removesuffix(" mph").removeprefix("speed: ").split(", script ")
     assert drive != script
 
@@ -72,3 +72,16 @@ def test_the_case_player_draws_a_chosen_drive_with_its_own_lines(tab, folder):
             "document.querySelector('#other')})")  # fmt: skip
     assert all(", aeb drives V" in caption for caption in tab.run(CAPTIONS))
     assert tab.faults == []
+
+
+def test_the_page_of_a_drive_says_its_outcome_and_goes_on_behind_the_contact(tab, folder):
+    told = next(t for f in folder.glob("drive/aeb/*/drive.json") if (t := json.loads(f.read_text()))["contact"])
+    tab.open(f"file://{folder / 'drive' / 'aeb' / told['ego'] / 'drive.html'}")
+    assert tab.run("document.querySelector('#verdict').textContent").startswith(told["outcome"])
+    assert tab.run("document.querySelector('#verdict').className") != "good"
+    assert tab.run("Number(document.querySelector('#time').max)") >= round(told["contact"]["t_s"] / 0.05) + 55
+    assert (
+        tab.run("[...document.querySelectorAll('.card')].filter(c => !c.hidden && !c.querySelector('td, button'))")
+        == []
+    )
+    assert "did not yield" in tab.run("document.querySelector('#rules').textContent") or told["ego"] == "V2"

@@ -49,9 +49,22 @@ def test_trackers_get_every_outcome_as_a_figure(tmp_path, config_file, reports):
     assert figures["drive/script_initiator_lost"] == 0.0
 
 
+def test_the_rules_that_the_script_breaks_stand_in_result_and_metrics(tmp_path, config_file, reports):
+    _, result, folder = go(tmp_path, config_file, reports)
+    counts = json.loads((folder / "metrics.json").read_text())["rules"]
+    assert result["rules"]
+    assert {f["rule"] for f in result["rules"]} <= set(counts)
+    broken = {(f["actor"], f["rule"]) for f in result["rules"] if f["status"] == "broken"}
+    assert counts["broken"] == len(broken)
+    figures = case_figures(folder, result)
+    assert figures["rules/broken"] == counts["broken"]
+    assert {"drive/script_initiator_rules_broken", "drive/script_initiator_broke_red_light"} <= set(figures)
+
+
 def test_a_refused_case_is_not_driven(tmp_path, config_file, reports):
     config = load(config_file(drive="script"))
     ending = run_case(config, Case(reports(c1="REFUSE") / "c1", "c1"), tmp_path / "out", "d1")
     assert ending.result["status"] == "refused"
     assert not (tmp_path / "out" / "kit" / "c1" / "drive").exists()
     assert ending.result["impact"] is None
+    assert ending.result["rules"] == []

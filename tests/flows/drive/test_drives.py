@@ -65,6 +65,27 @@ def test_a_case_is_driven_in_both_roles_and_its_script_left_alone(case):
     assert [t.actor for t in rows] == ["V1", "V2"]
 
 
+LIMIT = '<param key="speed_limit" value="posted_mph 20"/></edge>'
+
+
+def test_rules_are_told_with_the_outcome(case, tmp_path):
+    net = (case / "road.net.xml").read_text().replace("</edge>", LIMIT)
+    (case / "road.net.xml").write_text(net)
+    file = tmp_path / "drives.csv"
+    ended = run(case, "-d", "script", "--ego", "V1", "--csv", file)
+    assert ended.exit_code == 0, ended.output
+    assert "exceeded the speed limit 1" in ended.output
+    told = json.loads((case / "drive/script/V1/drive.json").read_text())["rules"]
+    found = next(f for f in told if f["rule"] == "speed_limit" and f["actor"] == "V1")
+    assert (found["status"], found["measured"], found["limit"]) == ("broken", pytest.approx(10.0, abs=0.05), 8.941)
+    assert file.read_text().splitlines()[1].endswith(",speed_limit")
+    assert "V1 exceeded the speed limit" in (case / "drive/script/V1/drive.html").read_text()
+    (case / "road.net.xml").write_text(net.replace("posted_mph 20", "assumed"))
+    run(case, "-d", "script", "--ego", "V1")
+    told = json.loads((case / "drive/script/V1/drive.json").read_text())["rules"]
+    assert {f["status"] for f in told if f["rule"] == "speed_limit"} == {"unknown"}
+
+
 def test_the_page_holds_script_and_drive(case):
     run(case, "--ego", "V1")
     page = (case / "drive/reference/V1/drive.html").read_text()

@@ -53,6 +53,8 @@ def test_the_hardest_for_a_driver_are_told_with_weights_and_what_decides(case):
     assert (told["driver"], told["ego"], told["samples"]) == ("aeb", "V1", 20)
     assert 0 <= told["contact_rate"] <= 2
     hard = [h["hardness"] for h in told["hardest"]]
+    assert all(h["rules"] for h in told["hardest_by_rules"])
+    assert 0 <= told["rule_rate"] <= 1
     assert hard == sorted(hard, reverse=True)
     assert all(-1 <= v <= 1 for v in told["decides"].values())
     assert (place / "decides.png").read_bytes().startswith(b"\x89PNG")

@@ -52,3 +52,16 @@ def test_a_lane_belongs_to_the_road_that_it_runs_along_either_way():
 def test_roads_run_as_their_axis_facts_say():
     report = CrashReport(case="c", narrative="V1 was traveling north on the north/south road.")
     assert road_axes(rows(report)) == {"road main": pytest.approx(math.pi / 2)}
+
+
+def test_sentences_carry_the_gravest_thing_that_the_account_says_of_them():
+    text = "V1 was northbound. A purple balloon hovered. V1 struck V2."
+    report = CrashReport(case="c", narrative=text)
+    facts = [{"field": "vehicles.V1.heading", "start": 0, "end": 18, "status": "stated"}]
+    items = [
+        {"kind": "unread", "start": 19, "end": 44}, {"kind": "lacks", "start": 0, "end": 18},
+        {"kind": "contradicts", "start": 0, "end": 18}, {"kind": "assumed", "start": None, "end": None},
+    ]  # fmt: skip
+    found = {text[s["start"] : s["end"]]: s["mark"] for s in sentences_of(report, facts, items)}
+    assert found == {"V1 was northbound.": "contradicts", "A purple balloon hovered.": "unread"}
+    assert [s["mark"] for s in sentences_of(report, facts)] == ["read"]

@@ -158,6 +158,47 @@ def test_every_figure_is_explained_in_a_line(page):
     assert any("small even with a collision" in line for name in rows for line in name)
 
 
+def test_no_figure_is_called_by_its_key(page):
+    rows = page.run("[...document.querySelectorAll('#metrics tr')].slice(1).map(r => r.innerText)")
+    assert rows
+    assert [row for row in rows if re.search(r"\bdrac\b|_| s before s|mps", row)] == []
+
+
+def test_what_was_not_read_is_marked_with_a_word_beside_the_color(tab, folder, tmp_path):
+    def marking(data):
+        data["sentences"][0]["mark"] = "unread"
+
+    tab.open(f"file://{changed(folder, tmp_path, marking)}")
+    assert text(tab, "#narrative .told.unread .marked") == "not read"
+    assert tab.run("!document.querySelector('#marks').hidden")
+
+
+@pytest.mark.parametrize("width", [1400, 800, 390])
+@pytest.mark.parametrize("mode", ["light", "dark"])
+def test_the_page_fits_and_can_be_read_in_every_width_and_mode(tab, folder, width, mode):
+    tab.size(width, 844)
+    tab.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": mode}])
+    tab.open(f"file://{folder / 'player.html'}?{width}{mode}")
+    assert tab.run("document.documentElement.scrollWidth") <= width
+    ink, paper = tab.run("['#actors', '.card'].map(q => getComputedStyle(document.querySelector(q)))"
+                         ".map((s, k) => k ? s.backgroundColor : s.color)")  # fmt: skip
+    assert contrast(ink, paper) > 4.5
+    tab.call("Emulation.setEmulatedMedia", features=[])
+    tab.size(1400, 900)
+
+
+def contrast(*colors):
+    """WCAG 2.1's ratio of two colors as `getComputedStyle` tells them."""
+
+    def light(color):
+        parts = [int(v) / 255 for v in re.findall(r"\d+", color)[:3]]
+        line = [v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4 for v in parts]
+        return 0.2126 * line[0] + 0.7152 * line[1] + 0.0722 * line[2]
+
+    dark, bright = sorted(map(light, colors))
+    return (bright + 0.05) / (dark + 0.05)
+
+
 def changed(folder, tmp_path, change):
     """The page with other data."""
     html = (folder / "player.html").read_text(encoding="utf-8")
@@ -173,12 +214,22 @@ def test_what_lacks_is_amber_open_and_leads_to_its_sentence(tab, folder, tmp_pat
     def lacking(data):
         start = data["sentences"][0]["of"]
         items = [{"kind": "lacks", "text": "a <i>stop</i> sign", "reason": "no place for it", "start": start}]
-        data["account"] = {"verdict": "lacking", "told": 5, "has": 4, "lacking": 1, "assumed": 0, "items": items}
+        sentence = "lacks 1 of 5 things told: 4 are there"
+        data["account"] = {
+            "verdict": "lacking",
+            "sentence": sentence,
+            "told": 5,
+            "has": 4,
+            "lacking": 1,
+            "assumed": 0,
+            "items": items,
+        }
 
     tab.open(f"file://{changed(folder, tmp_path, lacking)}")
     assert tab.run("document.querySelector('#account').open")
     assert tab.run("document.querySelector('#account').className") == "amber"
-    assert text(tab, "#account summary") == "⚠ 1 of 5 things told are lacking · 0 assumed"
+    assert text(tab, "#account summary") == "⚠ Lacks 1 of 5 things told: 4 are there"
+    assert tab.run("document.querySelector('#verdict').className") != "good"  # nothing is green over what lacks
     assert text(tab, "#lacks") == "a <i>stop</i> sign: no place for it"
     tab.click("#lacks button")
     tab.until("document.querySelector('#narrative .told.lit')")

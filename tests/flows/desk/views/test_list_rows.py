@@ -37,6 +37,19 @@ def result(**changes):
         ({"status": "failed"}, "broken"),
         ({"account": {"told": 3, "has": 2, "lacking": 1, "assumed": 0}}, "lacking"),
         ({"notes": [{"kind": "finding", "field": "", "subject": "", "text": "odd"}]}, "doubtful"),
+        (
+            {
+                "notes": [
+                    {
+                        "kind": "finding",
+                        "field": "",
+                        "subject": "",
+                        "text": "template: no posted speed limit is told of W; the map leaves it open",
+                    }
+                ]
+            },
+            "whole",
+        ),
         ({"notes": [{"kind": "plan", "field": "", "subject": "", "text": "V1 stands by"}]}, "whole"),
         ({"account": None}, "doubtful"),
         ({"facts": [fact("roads.N.lanes_forward", 2), fact("roads.N.lanes_forward", 3, "diagram")]}, "doubtful"),

@@ -73,3 +73,25 @@ def test_who_takes_no_part_in_the_first_contact_is_a_bystander():
 def test_where_nothing_tells_them_apart_the_striker_began_and_that_is_a_default():
     fact = roles(PLAIN)["V1"]
     assert (fact.value, fact.status) == ("initiator", "default")
+
+
+STANDS = "Vehicle 1 was stopped at the red light, facing north. "
+DRIVES_ON = "Vehicle 1 was traveling north and had a green light. "
+HIT = "The front of Vehicle 1 struck the pedestrian. "
+
+
+@pytest.mark.parametrize(
+    ("text", "initiator"),
+    [
+        (DRIVES_ON + "A pedestrian was crossing the road from east to west against the signal. " + HIT, "P1"),
+        (STANDS + "A pedestrian crossing against the signal walked into the front of Vehicle 1.", "P1"),
+        (DRIVES_ON + "A pedestrian darted out from between parked cars. " + HIT, "P1"),
+        (DRIVES_ON + "A pedestrian was walking outside the crosswalk. " + HIT, "P1"),
+        ("Vehicle 1 was traveling north. A deer ran onto the road. The front of Vehicle 1 struck the deer.", "A1"),
+        (DRIVES_ON + "A pedestrian was walking in the crosswalk. " + HIT, "V1"),
+        ("Vehicle 1 was turning left. A pedestrian crossed with the signal. " + HIT, "V1"),
+        ("Vehicle 1 ran the red light. A pedestrian was crossing in the crosswalk. " + HIT, "V1"),
+    ],
+)
+def test_people_and_animals_begin_a_crash_where_they_step_out_against_a_vehicle(text, initiator):
+    assert [k for k, v in values(text).items() if v == "initiator"] == [initiator]

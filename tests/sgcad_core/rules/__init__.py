@@ -1,0 +1,1 @@
+"""Traffic rules: what is broken, kept or unknown."""
