@@ -18,7 +18,9 @@ from sgcad_core.reading.reading import read
 def test_a_parked_vehicle_heads_as_the_traffic_on_its_side_of_the_road(
     side: str, struck: str, heading: str, area: str
 ) -> None:
-    told = f"V1 was traveling north on a road. V1 departed the roadway to the {side} and the front of V1 struck {struck}"
+    told = (
+        f"V1 was traveling north on a road. V1 departed the roadway to the {side} and the front of V1 struck {struck}"
+    )
     crash = read(f"{told}, which was legally parked.").crash
     assert crash.vehicles[1].heading == heading
     assert crash.contacts[0].struck_area == area
