@@ -168,6 +168,18 @@ def _rolls(made: ExecutedCase, who: str, value: Value) -> Comparison:
     return Comparison(most >= math.pi / 2 - 1e-3, round(math.degrees(most)), "it stays on its wheels")
 
 
+def _roll_quarters(made: ExecutedCase, who: str, value: Value) -> Comparison:
+    turned = round(abs(float(made.tracks[who].rolls[-1])) / (math.pi / 2))
+    return Comparison(turned == value, turned, f"it rolls {turned} quarter turns")
+
+
+def _rolls_to(made: ExecutedCase, who: str, value: Value) -> Comparison:
+    """Whether it rolls with the told side leading; rolls are positive to the right."""
+    rolls = made.tracks[who].rolls
+    leads = "right" if float(rolls[int(np.abs(rolls).argmax())]) > 0 else "left"
+    return Comparison(leads == value, leads, f"its {leads} side leads when it rolls")
+
+
 def _departs(made: ExecutedCase, who: str, value: Value) -> Comparison:
     """Whether a vehicle is off the road at its first contact, on the told side; any side fits one along its way."""
     poses = VehicleMotion(made.crash, who).before
@@ -211,6 +223,7 @@ def _exit(made: ExecutedCase, who: str) -> str | None:
 
 _JUDGES: dict[str, Judge] = {
     "heading": _heading, "lane": _lane, "lane_word": _lane, "spin_deg": _spin_deg, "rest.side": _side,
-    "rest.attitude": _attitude, "from_stop": _from_rest, "rolls": _rolls, "departs": _departs, "origin": _joins(_start),
-    "target": _joins(_exit), "rest.distance_m": _distance,
+    "rest.attitude": _attitude, "from_stop": _from_rest, "rolls": _rolls, "roll_quarters": _roll_quarters,
+    "rolls_to": _rolls_to, "departs": _departs, "origin": _joins(_start), "target": _joins(_exit),
+    "rest.distance_m": _distance,
 }  # fmt: skip

@@ -147,14 +147,15 @@ def _hides(behavior: BehaviorSpec, motions: Sequence[Trajectory]) -> bool:
     touches = first_touches(motions, sizes)
     pair = {name for c in behavior.contacts[:1] for name in (c.striker, c.struck)}
     return any(
-        _turned_otherwise(actor.maneuver, track, touches.get(actor.id, math.inf))
+        _turned_otherwise(actor.maneuver, track, touches.get(actor.id))
         for actor, track in zip(behavior.actors, motions, strict=True)
         if actor.id in pair
     )
 
 
-def _turned_otherwise(maneuver: Maneuver, track: Trajectory, until_s: float) -> bool:
-    heading = np.asarray(track.heading_rad)[: int(np.searchsorted(track.t_s, until_s, side="right"))]
+def _turned_otherwise(maneuver: Maneuver, track: Trajectory, touch: int | None) -> bool:
+    """Whether a track turns otherwise than its maneuver before its first touch, a sample; None: all along."""
+    heading = np.asarray(track.heading_rad)[: None if touch is None else touch + 1]
     turned = float(np.unwrap(heading)[-1] - heading[0]) if len(heading) else 0.0
     if maneuver in TURNING:
         return (-turned if maneuver == "turn_right" else turned) < TURNED_RAD

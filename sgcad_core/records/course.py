@@ -62,6 +62,10 @@ class CourseTold:
     """How it turned after its first contact."""
     spin_deg: float | None = None
     rolls: bool = False
+    roll_quarters: int | None = None
+    """Quarter turns of its rollover."""
+    rolls_to: Hand | None = None
+    """The side that leads when it rolls over."""
     rest: RestTold = RestTold()
 
     @property

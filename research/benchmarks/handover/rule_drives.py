@@ -10,8 +10,8 @@ lane, negative before it, metres; between two places the acceleration is constan
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator, Mapping
+import argparse
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -193,11 +193,14 @@ def _trajectory(name: str, rows: Floats) -> Trajectory:
 
 
 # ------------------------------------------------------------------ told
-def main(arguments: list[str]) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print the agreement; 1 where it is below 0.95."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--all", action="store_true", help="each drive, also where label and oracle agree")
+    asked = parser.parse_args(arguments)
     found = list(verdicts(labelled()))
     for one in found:
-        if not one.agrees or "--all" in arguments:
+        if not one.agrees or asked.all:
             print(f"{'agrees' if one.agrees else 'DIFFERS'}  {one.drive.name}: {one.drive.why}")  # noqa: T201
             if not one.agrees:
                 print(f"    label {dict(one.drive.label)}\n    said  {dict(one.said)}")  # noqa: T201
@@ -211,4 +214,4 @@ def main(arguments: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    raise SystemExit(main(sys.argv[1:]))
+    raise SystemExit(main())

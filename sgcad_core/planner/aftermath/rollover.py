@@ -23,6 +23,8 @@ _SLIDES_MPS = 0.5
 """Lateral speed below which it rolls to the nearer side."""
 _TO_THE_RIGHT: dict[Attitude, float] = {"right": 0.5, "roof": 1.0, "left": 1.5, "wheels": 2.0}
 """Half turns to the right until it lies like this."""
+_LIES_AFTER: dict[int, Attitude] = {1: "right", 3: "left"}
+"""How it lies after an odd number of quarter turns to the right."""
 
 
 def rolls_over(told: CourseTold) -> bool:
@@ -34,7 +36,7 @@ def roll_angles(poses: Floats, hit: int, told: CourseTold) -> Floats:
     """(n,) roll of (n, 3) poses whose first contact is sample `hit`, radians, positive to the right (about x, z up)."""
     first = min(hit + round(TRIPPED_S / STEP_S), len(poses) - 1)
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(poses[first:, :2], axis=0).T))))
-    total = _total(_sideways_mps(poses, first), told.rest.attitude)
+    total = _total(_sideways_mps(poses, first), told)
     least = math.ceil(abs(total) / _ROLLS_RADPS / STEP_S)
     share = way / way[-1] if way[-1] > 0.0 else np.ones(len(way))
     slowest = np.arange(len(way)) / max(least, 1)
@@ -69,12 +71,26 @@ def _sideways_mps(poses: Floats, at: int) -> float:
     return float(dy * math.cos(heading) - dx * math.sin(heading))
 
 
-def _total(left_mps: float, attitude: Attitude | None) -> float:
-    """Total roll, radians: in the direction of its slide, else the shorter one. Without a stated end, onto its side."""
-    to_left = left_mps > 0.0
-    wanted = attitude or ("left" if to_left else "right")
+def _total(left_mps: float, told: CourseTold) -> float:
+    """Total roll, radians: the told side leads, else that to which it slides, else the nearer one.
+
+    So many quarter turns as are told; without them until it lies as told; without a stated end, onto its side.
+    """
+    to_left = told.rolls_to == "left" if told.rolls_to else left_mps > 0.0
+    if told.roll_quarters:
+        return _of_quarters(told.roll_quarters, to_left, told)
+    wanted = told.rest.attitude or ("left" if to_left else "right")
     right = _TO_THE_RIGHT[wanted] * math.pi
     left = right - 2 * math.pi if wanted != "wheels" else -right
-    if abs(left_mps) < _SLIDES_MPS:
+    if abs(left_mps) < _SLIDES_MPS and told.rolls_to is None:
         return min(right, left, key=abs)
     return left if to_left else right
+
+
+def _of_quarters(count: int, to_left: bool, told: CourseTold) -> float:
+    """A told number of quarter turns, radians; without a leading side to that from which it lies as told."""
+    turned = count * math.pi / 2
+    hand = -1.0 if to_left else 1.0
+    if told.rolls_to is None and told.rest.attitude in ("left", "right") and count % 2:
+        hand = 1.0 if _LIES_AFTER[count % 4] == told.rest.attitude else -1.0
+    return hand * turned

@@ -18,6 +18,7 @@ from sgcad_core.reading.language import Rule, of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
 from sgcad_core.reading.motion.motion_record import ManeuverCue, Source
 from sgcad_core.reading.text.compass import COMPASS, WORDS, turned
+from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.reading.text.sentence_roles import HIT, Role
 from sgcad_core.records.course import CourseTold, Hand, ImpactTold, Spin, Steering
 from sgcad_core.records.specs import Compass
@@ -27,6 +28,8 @@ UNREAD: frozenset[Role] = frozenset({"codes", "factors", "towing", "injury", "re
 _RETOLD: frozenset[Role] = frozenset({"interview"})
 _FAR_M = (0.5, 300.0)
 """Distances from a contact to a rest that are believed."""
+_MOST_QUARTERS = 24
+"""Quarter turns; more is a misreading."""
 _HANDS: dict[str, Hand] = {"left": "left", "right": "right"}
 
 
@@ -185,6 +188,7 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
     rolled = rule("course_rest.rolled").search(text)
     if rolled:
         one.add("rolls", True, Source(segment.number, rolled[0], "course_rest.rolled"))
+        _read_roll(one, segment, text)
     lies = clause or (text if rolled else "")
     for wording in of_role("attitude"):
         if m := wording.search(lies):
@@ -200,13 +204,24 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
         _read_place(one, segment, text, clause)
 
 
+def _read_roll(one: _CourseReader, segment: Segment, text: str) -> None:
+    """How far it rolled, and with which side leading."""
+    if m := rule("course_rest.quarters").search(text):
+        count = int(m["count"]) if m["count"].isdigit() else NUMBERS.get(m["count"].lower(), 0)
+        if 0 < count <= _MOST_QUARTERS:
+            one.add("roll_quarters", count, Source(segment.number, m[0], "course_rest.quarters"))
+    if m := rule("course_rest.rolls_to").search(text):
+        hand: Hand = "left" if next(filter(None, m.groups())).lower() == "left" else "right"
+        one.add("rolls_to", hand, Source(segment.number, m[0], "course_rest.rolls_to"))
+
+
 def _read_distance(one: _CourseReader, segment: Segment, text: str) -> None:
     """The way from the contact to the rest, or how far from it the rest is."""
-    for name in ("course_rest.from_impact", "course_rest.way_to_rest"):
-        if m := rule(name).search(text):
+    for told in (rule("course_rest.from_impact"), rule("course_rest.way_to_rest")):
+        if m := told.search(text):
             meters = float(m["number"]) * METERS[m["unit"].lower()]
             if _FAR_M[0] <= meters <= _FAR_M[1]:
-                one.add_rest("distance_m", round(meters, 1), Source(segment.number, m[0], name))
+                one.add_rest("distance_m", round(meters, 1), Source(segment.number, m[0], told.id))
             return
 
 

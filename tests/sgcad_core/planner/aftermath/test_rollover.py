@@ -43,6 +43,21 @@ def test_it_lies_as_told_and_rolls_the_way_it_slides(attitude, left_mps, hit):
         assert (roll[-1] < 0) == (left_mps > 0)  # positive is to the right
 
 
+@settings(max_examples=60, deadline=None)
+@given(st.integers(1, 12), st.sampled_from(["left", "right"]), st.floats(-8, 8))
+def test_it_rolls_as_often_as_told_with_the_told_side_leading(quarters, hand, left_mps):
+    course = CourseTold(rolls=True, roll_quarters=quarters, rolls_to=hand)
+    roll = roll_angles(sliding(left_mps), 10, course)
+    assert float(roll[-1]) == pytest.approx(quarters * math.pi / 2 * (1 if hand == "right" else -1))
+    assert np.abs(np.diff(roll)).max() <= math.radians(410.0) * 0.05
+
+
+@given(st.sampled_from([1, 3, 5]), st.sampled_from(["left", "right"]), st.floats(-8, 8))
+def test_quarter_turns_without_a_leading_side_end_as_it_is_told_to_lie(quarters, attitude, left_mps):
+    course = CourseTold(rolls=True, roll_quarters=quarters, rest=RestTold(attitude=attitude))
+    assert attitude_of(float(roll_angles(sliding(left_mps), 10, course)[-1])) == attitude
+
+
 def test_without_a_told_end_it_comes_to_lie_on_the_side_to_which_it_slides():
     assert attitude_of(float(roll_angles(sliding(3.0), 10, told(None))[-1])) == "left"
     assert attitude_of(float(roll_angles(sliding(-3.0), 10, told(None))[-1])) == "right"

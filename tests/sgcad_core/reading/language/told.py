@@ -19,7 +19,7 @@ import yaml
 
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.language.data import language
-from sgcad_core.reading.language.rules import _given
+from sgcad_core.reading.language.rules import _given, _within
 from sgcad_core.reading.reading import Reading, read
 from sgcad_core.reading.text.privacy import redact
 
@@ -82,11 +82,11 @@ def silenced(id: str) -> Iterator[None]:
     never = tuple(_FLAGS.sub(r"\1(?!)(?:", one, 1) + ")" for one in handle.record.alternatives)
     record = replace(handle.record, alternatives=never)
     pattern = language().pattern(record)
-    _given.cache_clear()
+    _given.cache_clear(), _within.cache_clear()
     handle.__dict__.update({name: getattr(pattern, name) for name in _METHODS}, pattern=pattern, record=record)
     try:
         yield
     finally:
         handle.__dict__.clear()
         handle.__dict__.update(kept)
-        _given.cache_clear()
+        _given.cache_clear(), _within.cache_clear()
