@@ -170,7 +170,7 @@ def _rolls(made: ExecutedCase, who: str, value: Value) -> Comparison:
 
 def _roll_quarters(made: ExecutedCase, who: str, value: Value) -> Comparison:
     turned = round(abs(float(made.tracks[who].rolls[-1])) / (math.pi / 2))
-    return Comparison(turned == value, turned, f"it rolls {turned} quarter turns")
+    return Comparison(turned == value, turned, f"it rolls {turned} quarter turn{'s' * (turned != 1)}")
 
 
 def _rolls_to(made: ExecutedCase, who: str, value: Value) -> Comparison:

@@ -19,6 +19,9 @@ TRIPPED_S = 0.3
 """Time from the contact to the beginning of the roll: it first slides, or leaves the road."""
 _ROLLS_RADPS = math.radians(400.0)
 """At most; measured are 300 to 500 degrees a second (NHTSA, dolly and curb-trip tests)."""
+_WAY_PER_QUARTER_M = 1.0
+"""Least way on which a vehicle rolls by a quarter turn; half the girth of a car over four is 1.6 m, and it slides too.
+What stands cannot be shown to roll: players keep no two vertices in one place."""
 _SLIDES_MPS = 0.5
 """Lateral speed below which it rolls to the nearer side."""
 _TO_THE_RIGHT: dict[Attitude, float] = {"right": 0.5, "roof": 1.0, "left": 1.5, "wheels": 2.0}
@@ -36,7 +39,7 @@ def roll_angles(poses: Floats, hit: int, told: CourseTold) -> Floats:
     """(n,) roll of (n, 3) poses whose first contact is sample `hit`, radians, positive to the right (about x, z up)."""
     first = min(hit + round(TRIPPED_S / STEP_S), len(poses) - 1)
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(poses[first:, :2], axis=0).T))))
-    total = _total(_sideways_mps(poses, first), told)
+    total = _total(_sideways_mps(poses, first), told, float(way[-1]))
     least = math.ceil(abs(total) / _ROLLS_RADPS / STEP_S)
     share = way / way[-1] if way[-1] > 0.0 else np.ones(len(way))
     slowest = np.arange(len(way)) / max(least, 1)
@@ -71,20 +74,27 @@ def _sideways_mps(poses: Floats, at: int) -> float:
     return float(dy * math.cos(heading) - dx * math.sin(heading))
 
 
-def _total(left_mps: float, told: CourseTold) -> float:
+def _total(left_mps: float, told: CourseTold, way_m: float) -> float:
     """Total roll, radians: the told side leads, else that to which it slides, else the nearer one.
 
-    So many quarter turns as are told; without them until it lies as told; without a stated end, onto its side.
+    So many quarter turns as are told and as its way allows; without them until it lies as told; without a stated end,
+    onto its side.
     """
     to_left = told.rolls_to == "left" if told.rolls_to else left_mps > 0.0
     if told.roll_quarters:
-        return _of_quarters(told.roll_quarters, to_left, told)
+        return _of_quarters(_possible(told.roll_quarters, way_m), to_left, told)
     wanted = told.rest.attitude or ("left" if to_left else "right")
     right = _TO_THE_RIGHT[wanted] * math.pi
     left = right - 2 * math.pi if wanted != "wheels" else -right
     if abs(left_mps) < _SLIDES_MPS and told.rolls_to is None:
         return min(right, left, key=abs)
     return left if to_left else right
+
+
+def _possible(count: int, way_m: float) -> int:
+    """The most quarter turns, no more than are told, that a way allows, and then such that it lies the same."""
+    most = min(count, max(1, int(way_m / _WAY_PER_QUARTER_M)))
+    return next((n for n in range(most, 0, -1) if (count - n) % 4 == 0), most)
 
 
 def _of_quarters(count: int, to_left: bool, told: CourseTold) -> float:

@@ -58,6 +58,13 @@ def test_quarter_turns_without_a_leading_side_end_as_it_is_told_to_lie(quarters,
     assert attitude_of(float(roll_angles(sliding(left_mps), 10, course)[-1])) == attitude
 
 
+@pytest.mark.parametrize(("way_m", "quarters"), [(0.1, 1), (3.5, 1), (5.2, 5), (60.0, 9)])
+def test_it_rolls_no_more_often_than_its_way_allows(way_m, quarters):
+    course = CourseTold(rolls=True, roll_quarters=9, rolls_to="right")
+    poses = np.column_stack((np.linspace(0.0, way_m, 160), np.zeros((160, 2))))
+    assert float(roll_angles(poses, 0, course)[-1]) == pytest.approx(quarters * math.pi / 2, abs=0.01)
+
+
 def test_without_a_told_end_it_comes_to_lie_on_the_side_to_which_it_slides():
     assert attitude_of(float(roll_angles(sliding(3.0), 10, told(None))[-1])) == "left"
     assert attitude_of(float(roll_angles(sliding(-3.0), 10, told(None))[-1])) == "right"
