@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from flows.player.player_highlights import facts_by_thing, road_along, road_axes, sentences_of
+from flows.player.player_highlights import MARK_WORDS, facts_by_thing, road_along, road_axes, sentences_of
 from flows.player.road_shapes import Drawing, drawing_of
 from flows.player.signals_shown import SignalShown, signals_shown
 from sgcad_core.case.records import ActorInfo, CrashReport, Floats, Scenario, Trajectory
@@ -159,6 +159,7 @@ class View:
             "conditions": _conditions(self.record.scenario),
             "narrative": self.report.narrative,
             "sentences": sentences_of(self.report, self.result.get("facts", ()), self._account()),
+            "marked": MARK_WORDS,
             "facts": facts_by_thing(self.result.get("facts", ())),
             "diagrams": [_data_url(d.png) for d in self.report.diagrams[:DIAGRAM_LIMIT]],
             "metrics": self.metrics,

@@ -130,15 +130,14 @@
   }
   for (const a of data.actors) { const line = make("span"), id = make("b", a.id); id.style.background = a.color; line.append(id, make("i", "", { style: "font-style:normal" })); line.tabIndex = 0; pointable(line, [a.id]); $("legend").append(line); }
   for (const url of data.diagrams) { const img = make("img", null, { src: url, alt: "Crash diagram of the report" }); img.onclick = () => img.classList.toggle("large"); $("diagrams").append(img); $("diagrams").hidden = false; }
-  const MARKS = { contradicts: "contradicted", unread: "not read", lacks: "not in the scenario" };
   $("marks").hidden = !data.sentences.some((s) => s.mark);
   let read = 0;
   data.sentences.forEach((s, k) => {
     tell($("narrative"), data.narrative.slice(read, s.start), read);
     const span = pointable(make("span", "", { className: "told", tabIndex: 0 }), s.things, s);
-    if (s.mark && s.mark !== "read") { span.classList.add(s.mark); span.title = MARKS[s.mark]; }
+    if (s.mark && s.mark !== "read") { span.classList.add(s.mark); span.title = data.marked[s.mark]; }
     span.dataset.k = k; tell(span, data.narrative.slice(s.start, s.end), s.start); $("narrative").append(span);
-    if (s.mark && s.mark !== "read") span.append(make("sup", MARKS[s.mark], { className: "marked" }));
+    if (s.mark && s.mark !== "read") span.append(make("sup", data.marked[s.mark], { className: "marked" }));
     read = s.end;
   });
   tell($("narrative"), data.narrative.slice(read), read);

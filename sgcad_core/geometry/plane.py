@@ -149,6 +149,12 @@ def resample(points: Floats, s_m: ArrayLike) -> Floats:
     return np.column_stack([np.interp(np.asarray(s_m, dtype=float), along, points[:, i]) for i in (0, 1)])
 
 
+def runs(flags: ArrayLike) -> list[tuple[int, int]]:
+    """First and last place of every unbroken run of true values in (n,) flags."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], np.asarray(flags, dtype=int), [0]))))
+    return [(int(a), int(b) - 1) for a, b in edges.reshape(-1, 2)]
+
+
 def distinct(points: Floats, apart_m: float = 1e-3) -> Floats:
     """The points of a polyline that lie further than `apart_m` from the one before."""
     kept: Floats = points[np.append(True, np.hypot(*np.diff(points, axis=0).T) > apart_m)]

@@ -78,11 +78,13 @@ def _slip(axle: Floats, heading: Floats, *, backing: bool) -> float:
 
 
 # ------------------------------------------------------------------ overlaps
-def first_touches(motions: Sequence[Trajectory], sizes: Mapping[str, Size]) -> dict[str, int]:
-    """Actor -> the sample of its first overlap with any other; without one it is left out."""
+def first_touches(motions: Sequence[Trajectory], sizes: Mapping[str, Size], *, at_start: bool = True) -> dict[str, int]:
+    """Actor -> the sample of its first overlap with any other; without one it is left out, and a pair that overlaps
+    from the start too unless `at_start`."""
     found: dict[str, int] = {}
     for a, b in combinations(motions, 2):
-        if (hit := first_overlap(a.pose, sizes[a.actor], b.pose, sizes[b.actor])) is not None:
+        hit = first_overlap(a.pose, sizes[a.actor], b.pose, sizes[b.actor])
+        if hit is not None and (hit > 0 or at_start):
             found |= {name: min(found.get(name, hit), hit) for name in (a.actor, b.actor)}
     return found
 

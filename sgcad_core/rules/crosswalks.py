@@ -112,5 +112,5 @@ def _crossed_traffic(scene: RuleScene, walk: Walk) -> set[str] | None:
     links = links or [c for e in into for c in graph.leaving(e) if c.light]
     if not links:
         return None
-    shown = [scene.lights.at(c, scene.plan_time(walk.first)) if scene.lights else None for c in links]
+    shown = [scene.shown(c, walk.first) for c in links]
     return {one.state for one in shown if one is not None}

@@ -11,9 +11,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sgcad_core.geometry.plane import Floats
+from sgcad_core.geometry.plane import Floats, runs
 from sgcad_core.metrics.lane_places import PLACES
-from sgcad_core.rules.records import STEP_S, Mover, RuleFinding, RuleScene, Status, runs
+from sgcad_core.rules.records import Mover, RuleFinding, RuleScene, Status, lasts_s
 
 _NEAR_S = 3.0
 """A vehicle further ahead is not followed."""
@@ -34,7 +34,7 @@ def _pair(scene: RuleScene, mover: Mover, leader: Mover) -> Iterator[RuleFinding
     told, headway = scene.limits, _headway(scene, mover, leader)
     if not (headway < _NEAR_S).any():
         return
-    short = [r for r in runs(headway < told.headway_s) if (r[1] - r[0] + 1) * STEP_S >= told.headway_lasts_s]
+    short = [r for r in runs(headway < told.headway_s) if lasts_s(r) >= told.headway_lasts_s]
     span = max(short, key=lambda r: r[1] - r[0], default=None)
     status: Status = "broken" if span else "kept"
     if span is None:

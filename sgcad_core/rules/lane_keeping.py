@@ -13,9 +13,11 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from sgcad_core.geometry.plane import runs
+from sgcad_core.metrics.drivability import STEP_S
 from sgcad_core.metrics.lane_places import PLACES
 from sgcad_core.roads.surface import RoadSurface, road_surface
-from sgcad_core.rules.records import STEP_S, Mover, RuleFinding, RuleScene, Status, runs
+from sgcad_core.rules.records import Mover, RuleFinding, RuleScene, Status, lasts_s
 
 _STRIPS = frozenset({"biking", "parking"})
 _JOINT_S = 0.3
@@ -34,7 +36,7 @@ def wrong_side(scene: RuleScene) -> Iterator[RuleFinding]:
         for span in long:
             passed = _passed(scene, mover, span)
             note = f"passes {passed}; whether the center line may be crossed is not told" if passed else ""
-            seconds = (span[1] - span[0] + 1) * STEP_S
+            seconds = lasts_s(span)
             status: Status = "unknown" if passed else "broken"
             where = mover.steps.lanes[span[0]]
             yield mover.found("wrong_side", status, span, where, seconds, scene.limits.off_lane_s, "s", note, passed)
@@ -67,9 +69,9 @@ def _long(scene: RuleScene, flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """Stretches that count; those with a short gap between them (a joint of two lanes) are one."""
     joined = flags.copy()
     for first, last in runs(~flags):
-        if first > 0 and last < len(flags) - 1 and (last - first + 1) * STEP_S <= _JOINT_S:
+        if first > 0 and last < len(flags) - 1 and lasts_s((first, last)) <= _JOINT_S:
             joined[first : last + 1] = True
-    return [r for r in runs(joined) if (r[1] - r[0] + 1) * STEP_S > scene.limits.off_lane_s]
+    return [r for r in runs(joined) if lasts_s(r) > scene.limits.off_lane_s]
 
 
 def _outside(scene: RuleScene, mover: Mover) -> NDArray[np.bool_]:

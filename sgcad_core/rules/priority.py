@@ -10,9 +10,10 @@ import math
 from typing import NamedTuple
 
 from sgcad_core.formats.sumo.parameters import CONTROL
+from sgcad_core.metrics.drivability import STEP_S
 from sgcad_core.roads.lane_graph import Connection, LaneGraph
 from sgcad_core.rules.passages import Passage
-from sgcad_core.rules.records import STEP_S, RuleScene
+from sgcad_core.rules.records import RuleScene
 from sgcad_core.rules.red_light import stopped
 
 
@@ -50,7 +51,7 @@ def _left_turn(one: Passage, other: Passage) -> Duty:
 def _at_signal(scene: RuleScene, one: Passage, other: Passage) -> Duty:
     states = []
     for passage in (one, other):
-        shown = scene.lights.at(passage.link, scene.plan_time(passage.line)) if scene.lights else None
+        shown = scene.shown(passage.link, passage.line)
         states.append(shown.state if shown else "")
     if "" in states:
         return Duty(None, "the map tells no plan of the signals")

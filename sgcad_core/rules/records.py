@@ -5,22 +5,21 @@ Knows actors, trajectories and the lane graph; no rule.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sgcad_core.case.records import ActorInfo, Record, Trajectory
-from sgcad_core.geometry.plane import Floats, Size, first_overlap
+from sgcad_core.geometry.plane import Floats, Size
 from sgcad_core.metrics.displacement import velocities
+from sgcad_core.metrics.drivability import STEP_S, first_touches
 from sgcad_core.metrics.lane_places import LaneSteps, lane_steps
 from sgcad_core.metrics.swept_cells import Track
-from sgcad_core.roads.lane_graph import LaneGraph
-from sgcad_core.rules.lights import Lights
+from sgcad_core.roads.lane_graph import Connection, LaneGraph
+from sgcad_core.rules.lights import Lights, Shown
 
 Rule = Literal[
     "red_light", "stop_sign", "right_of_way", "wrong_side", "speed_limit", "following_distance", "off_road"
@@ -34,7 +33,6 @@ WORDS: Mapping[Rule, str] = {
     "following_distance": "followed too closely", "off_road": "drove off the lanes",
 }  # fmt: skip
 Status = Literal["broken", "kept", "unknown"]
-STEP_S = 0.05
 
 
 class RuleLimits(Record):
@@ -132,12 +130,17 @@ class RuleScene:
         """Actors with their motion up to their first contact with anything."""
         infos = {a.id: a for a in self.actors}
         known = [t for t in self.trajectories if t.actor in infos and len(t.t_s) > 1]
-        touches = _touches(known, {a.id: (a.length_m, a.width_m) for a in self.actors})
+        sizes = {a.id: (a.length_m, a.width_m) for a in self.actors}
+        touches = first_touches(known, sizes, at_start=False)  # a truck overlaps with its trailer
         return tuple(Mover(self.graph, infos[t.actor], t, touches.get(t.actor)) for t in known)
 
     def plan_time(self, sample: int) -> float:
         """Time of the signal plan at a sample."""
         return sample * STEP_S if self.plan_s is None else float(self.plan_s[min(sample, len(self.plan_s) - 1)])
+
+    def shown(self, link: Connection, sample: int) -> Shown | None:
+        """What the signal of a connection shows at a sample; None where the plan is not told."""
+        return self.lights.at(link, self.plan_time(sample)) if self.lights else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,19 +210,6 @@ class Mover:
         )  # fmt: skip
 
 
-def _touches(motions: Sequence[Trajectory], sizes: Mapping[str, Size]) -> dict[str, int]:
-    """Actor -> the sample of its first contact. Boxes that overlap from the start (a truck and its trailer) have none
-    with each other."""
-    found: dict[str, int] = {}
-    for a, b in combinations(motions, 2):
-        hit = first_overlap(a.pose, sizes[a.actor], b.pose, sizes[b.actor])
-        if hit:
-            found |= {name: min(found.get(name, hit), hit) for name in (a.actor, b.actor)}
-    return found
-
-
-def runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First and last sample of every unbroken run of true values."""
-    padded = np.concatenate(([0], np.asarray(flags, dtype=int), [0]))
-    edges = np.flatnonzero(np.diff(padded))
-    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+def lasts_s(span: tuple[int, int]) -> float:
+    """Duration of a stretch from one sample to another, both within it."""
+    return (span[1] - span[0] + 1) * STEP_S

@@ -22,7 +22,7 @@ def red_light(scene: RuleScene, crossed: Sequence[Passage]) -> Iterator[RuleFind
 
 
 def _judged(scene: RuleScene, one: Passage) -> RuleFinding:
-    shown = scene.lights.at(one.link, scene.plan_time(one.line)) if scene.lights else None
+    shown = scene.shown(one.link, one.line)
     span = one.line, one.line
     if shown is None or shown.state not in ("red", "yellow", "green"):
         note = "the map tells no plan of the signals" if shown is None else f"the signal shows {shown.state}"

@@ -14,10 +14,11 @@ import numpy as np
 
 from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.metrics.conflict import box_distance
+from sgcad_core.metrics.drivability import STEP_S
 from sgcad_core.metrics.swept_cells import Track, common_cells
 from sgcad_core.rules.passages import Passage
 from sgcad_core.rules.priority import duty
-from sgcad_core.rules.records import STEP_S, Mover, RuleFinding, RuleScene, Status
+from sgcad_core.rules.records import Mover, RuleFinding, RuleScene, Status
 
 _BEHIND = 30
 """Samples after a vehicle has left the junction for which the others still come to its places."""

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from sgcad_core.formats.opendrive.signals import posted_mph
 from sgcad_core.formats.sumo.parameters import LIMIT
+from sgcad_core.geometry.plane import runs
 from sgcad_core.roads.lane_graph import Edge, LaneGraph
-from sgcad_core.rules.records import Mover, RuleFinding, RuleScene, Status, runs
+from sgcad_core.rules.records import Mover, RuleFinding, RuleScene, Status, lasts_s
 from sgcad_core.units import MPS_PER_MPH
 
 Basis = Literal["posted", "of the map", "assumed"]
@@ -56,7 +57,7 @@ def _judged(scene: RuleScene, mover: Mover) -> Iterator[RuleFinding]:
 def _on_lane(scene: RuleScene, mover: Mover, name: str, limit: EdgeLimit, here: NDArray[np.bool_]) -> RuleFinding:
     told = scene.limits
     most = limit.mps + max(told.over_limit_mps, told.over_limit_share * limit.mps)
-    stretches = [r for r in runs(here & (mover.speed_mps > most)) if (r[1] - r[0] + 1) * 0.05 >= told.over_limit_s]
+    stretches = [r for r in runs(here & (mover.speed_mps > most)) if lasts_s(r) >= told.over_limit_s]
     span = max(stretches, key=lambda r: float(mover.speed_mps[r[0] : r[1] + 1].max()), default=None)
     status: Status = "unknown" if limit.basis == "assumed" else "broken" if span else "kept"
     if span is None:

@@ -28,12 +28,13 @@ from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.geometry.plane import Floats, arc_lengths, distinct, headings, offset_polyline, prolonged, resample
 from sgcad_core.kinds import actor_kind, kind_of_letter
+from sgcad_core.metrics.drivability import STEP_S
 from sgcad_core.records.specs import Leg, RoadLayout
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.rules.judge import judge
 from sgcad_core.rules.lights import Lights, Turn
-from sgcad_core.rules.records import STEP_S, RuleFinding, RuleScene
+from sgcad_core.rules.records import RuleFinding, RuleScene
 
 DRIVES = Path(__file__).with_suffix(".yaml")
 _FAR_M = 400.0

@@ -34,15 +34,15 @@ import numpy as np
 
 from research.benchmarks.run_tables import by_config, options_of, show
 from research.benchmarks.scenes.lanes import Figures, Run
-from sgcad_core.geometry.plane import Floats, wrap_angle
+from sgcad_core.geometry.plane import Floats, runs, wrap_angle
 from sgcad_core.kinds import actor_kind
+from sgcad_core.metrics.drivability import STEP_S
 from sgcad_core.metrics.labels.motion_label_match import Path as Way
 from sgcad_core.metrics.labels.observed_crash import Crash
 from sgcad_core.metrics.rest_error import SPINS_RAD, near_m, rest_errors
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.records.course import CourseTold
 
-STEP_S = 0.05
 SPIN_SHARE, SPIN_DEG = 0.25, 30.0
 CRAWLS_MPS2, CRAWLS_S = 1.3, 2.5
 BENDS_DEG = 60.0
@@ -87,8 +87,7 @@ class Ended(NamedTuple):
         speed = self.speed[self.hits[0] + _BLOW :]
         rate = (speed[:-_RATE] - speed[_RATE:]) / (_RATE * STEP_S)
         slow = (rate < least_mps2) & (speed[:-_RATE] > _STANDS_MPS) & (speed[_RATE:] > 0.0)
-        ends = np.flatnonzero(np.diff(np.concatenate(([0], slow.astype(int), [0]))))
-        return float((ends[1::2] - ends[::2]).max(initial=0)) * STEP_S
+        return max((last - first + 1 for first, last in runs(slow)), default=0) * STEP_S
 
     @property
     def bends_deg(self) -> float:

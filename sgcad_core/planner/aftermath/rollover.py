@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.metrics.rest_error import compass_rad
+from sgcad_core.metrics.rest_error import attitude_of, compass_rad
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.records.course import Attitude, CourseTold
 
@@ -26,8 +26,6 @@ _SLIDES_MPS = 0.5
 """Lateral speed below which it rolls to the nearer side."""
 _TO_THE_RIGHT: dict[Attitude, float] = {"right": 0.5, "roof": 1.0, "left": 1.5, "wheels": 2.0}
 """Half turns to the right until it lies like this."""
-_LIES_AFTER: dict[int, Attitude] = {1: "right", 3: "left"}
-"""How it lies after an odd number of quarter turns to the right."""
 
 
 def rolls_over(told: CourseTold) -> bool:
@@ -102,5 +100,5 @@ def _of_quarters(count: int, to_left: bool, told: CourseTold) -> float:
     turned = count * math.pi / 2
     hand = -1.0 if to_left else 1.0
     if told.rolls_to is None and told.rest.attitude in ("left", "right") and count % 2:
-        hand = 1.0 if _LIES_AFTER[count % 4] == told.rest.attitude else -1.0
+        hand = 1.0 if attitude_of(turned) == told.rest.attitude else -1.0
     return hand * turned

@@ -18,7 +18,7 @@ from sgcad_core.reading.language import Rule, of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
 from sgcad_core.reading.motion.motion_record import ManeuverCue, Source
 from sgcad_core.reading.text.compass import COMPASS, WORDS, turned
-from sgcad_core.reading.text.normalise import NUMBERS
+from sgcad_core.reading.text.normalise import number
 from sgcad_core.reading.text.sentence_roles import HIT, Role
 from sgcad_core.records.course import CourseTold, Hand, ImpactTold, Spin, Steering
 from sgcad_core.records.specs import Compass
@@ -206,10 +206,9 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
 
 def _read_roll(one: _CourseReader, segment: Segment, text: str) -> None:
     """How far it rolled, and with which side leading."""
-    if m := rule("course_rest.quarters").search(text):
-        count = int(m["count"]) if m["count"].isdigit() else NUMBERS.get(m["count"].lower(), 0)
-        if 0 < count <= _MOST_QUARTERS:
-            one.add("roll_quarters", count, Source(segment.number, m[0], "course_rest.quarters"))
+    m = rule("course_rest.quarters").search(text)
+    if m and 0 < (count := number(m["count"])) <= _MOST_QUARTERS:
+        one.add("roll_quarters", count, Source(segment.number, m[0], "course_rest.quarters"))
     if m := rule("course_rest.rolls_to").search(text):
         hand: Hand = "left" if next(filter(None, m.groups())).lower() == "left" else "right"
         one.add("rolls_to", hand, Source(segment.number, m[0], "course_rest.rolls_to"))

@@ -5,7 +5,7 @@ A turn that is told as an act beats a plan to turn; a standing vehicle stays sta
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from sgcad_core.kinds import RAMP
 from sgcad_core.reading.language import rule
@@ -197,9 +197,7 @@ def _turn(motion: VehicleMotion, hit: tuple[Area | None, ...], same_way: Maneuve
 
 def _as_told(cue: ManeuverCue) -> Decision:
     """The turn that a cue tells or wants."""
-    if cue.kind == "want_u_turn":
-        return Decision("u_turn", cue=cue)
-    return Decision("turn_left" if cue.kind.endswith("turn_left") else "turn_right", cue=cue)
+    return Decision(cast("Maneuver", cue.kind.removeprefix("want_")), cue=cue)
 
 
 def _moved_on(motion: VehicleMotion, since: ManeuverCue) -> bool:

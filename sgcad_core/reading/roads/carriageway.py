@@ -15,8 +15,8 @@ from sgcad_core.records.specs import Compass
 
 MOST = 7
 """Lanes in one direction; more is a misreading."""
-FEW, EVEN = 3, 4
-"""Lanes of a divided road that are told of one carriageway: both halves have four at least, two each."""
+_FEW, _TWO_EACH = 3, 4
+"""A total that is too small for both halves of a divided road, and the least that is not."""
 
 
 @dataclass(frozen=True)
@@ -179,11 +179,11 @@ def _of_one_carriageway(facts: LaneFacts, used: int, numbered: bool) -> bool:
     """
     total = facts.total or 0
     told = facts.each_way or facts.toward or facts.turns or facts.center_turn_lane
-    if not FEW <= total + bool(facts.divided) <= MOST + bool(facts.divided) or told or facts.divided is False:
+    least = _FEW if facts.divided is None else 2
+    if facts.divided is False or told or not least <= total <= MOST:
         return False
-    if used > (total + 1) // 2:
-        return facts.divided or facts.one_way is None
+    beyond = used > (total + 1) // 2
     if facts.divided is None:
-        return facts.one_way is None and facts.highway and (numbered or total != EVEN)
-    odd = total % 2 == 1
-    return total <= FEW or odd or (facts.one_way is not False and (numbered or facts.highway))
+        return facts.one_way is None and (beyond or (facts.highway and (numbered or total != _TWO_EACH)))
+    of_half = total <= _FEW or total % 2 == 1 or beyond
+    return of_half or (facts.one_way is not False and (numbered or facts.highway))

@@ -14,7 +14,7 @@ from typing import Literal
 from sgcad_core.reading.language import of_role, rule, values
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.compass import WORDS
-from sgcad_core.reading.text.normalise import NUMBERS
+from sgcad_core.reading.text.normalise import number
 from sgcad_core.records.specs import Compass, Median
 
 Side = Literal["left", "right"]
@@ -23,12 +23,6 @@ Side = Literal["left", "right"]
 def compass(word: str) -> Compass:
     """The compass point of "north", "northbound", "northerly" or "Northern"."""
     return WORDS[rule("lanes.heading_end").sub("", word.lower())]
-
-
-def number(word: str) -> int:
-    """3 for "3" and "three"; 1 for "a", "the" and "single"."""
-    word = word.lower()
-    return int(word) if word.isdigit() else NUMBERS.get(word, 1)
 
 
 @dataclass(frozen=True)

@@ -113,8 +113,9 @@ def _maneuver(crash: CrashFacts, roads: RoadFacts, of: str, value: str) -> Chang
 def _comes_against(crash: CrashFacts, v: VehicleFacts) -> bool:
     """Whether a vehicle first touches one that is told to come the other way."""
     other = crash.first_met(v.id)
-    told = other is not None and other.heading is not None and other.heading_stated and v.heading_stated
-    return told and v.heading is not None and other is not None and other.heading == turned(v.heading, 180)
+    if other is None or v.heading is None or not (other.heading_stated and v.heading_stated):
+        return False
+    return other.heading == turned(v.heading, 180)
 
 
 def moved(v: VehicleFacts, maneuver: Maneuver) -> VehicleFacts:

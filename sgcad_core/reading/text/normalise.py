@@ -18,7 +18,17 @@ from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, Role, role_of
 from sgcad_core.reading.text.traced_text import TracedText, joined
 from sgcad_core.reading.text.typos import mended
 
-__all__ = ["CRASH_ROLES", "NUMBERS", "Role", "Sentence", "normalised", "normalize", "sentences", "split_sentences"]
+__all__ = [
+    "CRASH_ROLES",
+    "NUMBERS",
+    "Role",
+    "Sentence",
+    "normalised",
+    "normalize",
+    "number",
+    "sentences",
+    "split_sentences",
+]
 NUMBERS: dict[str, int] = values("number_word")
 MOST_READ = 16_000
 """Characters of a report that are read, four times the longest known: the one limit that keeps any text bearable."""
@@ -27,6 +37,12 @@ _TAIL = 12
 LONGEST = 1000
 """Characters of a sentence; the longest in published reports has about 650."""
 _WORDS = {str(number): word for word, number in NUMBERS.items()}
+
+
+def number(word: str) -> int:
+    """3 for "3" and "three"; 1 for "a", "the" and "single"."""
+    word = word.lower()
+    return int(word) if word.isdigit() else NUMBERS.get(word, 1)
 
 
 class Sentence(NamedTuple):

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.case.records import Floats, Trajectory
-from sgcad_core.geometry.plane import arc_lengths
+from sgcad_core.geometry.plane import arc_lengths, runs
 
 APART_M = 0.11
 """Nearest neighbors in space; a little above esmini's 0.1 m."""
@@ -171,8 +171,7 @@ def _blows(poses: Floats) -> list[int]:
 def _standstills(poses: Floats) -> list[tuple[int, int]]:
     """First and last row of every run of equal poses."""
     still = (np.abs(np.diff(poses, axis=0)) < _STILL).all(axis=1)
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], still, [False])).astype(int)))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+    return [(first, last + 1) for first, last in runs(still)]
 
 
 def _apart(poses: Floats, other: Floats) -> NDArray[np.bool_]:

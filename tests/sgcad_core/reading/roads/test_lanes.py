@@ -5,8 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.reading.roads.carriageway import MOST, carriageway
-from sgcad_core.reading.roads.lanes import LaneFacts, compass, lane_facts, number
-from sgcad_core.reading.text.normalise import normalize
+from sgcad_core.reading.roads.lanes import LaneFacts, compass, lane_facts
+from sgcad_core.reading.text.normalise import normalize, number
 
 
 def read(text: str) -> LaneFacts:
