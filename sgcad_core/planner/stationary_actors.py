@@ -7,8 +7,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, Twist, facing
 from sgcad_core.planner.encounter.maneuver_choices import ASKEW, aiming
+from sgcad_core.planner.lines.path import Path
+from sgcad_core.planner.motion import Motion
 
 
 def stand_offs(role: Role) -> list[Drift]:
@@ -47,12 +52,20 @@ def beside_the_way(role: Role) -> list[Drift]:
 
 
 def any_angle(role: Role) -> list[Twist]:
-    """An object has no heading of its own: its wanted side is turned to the approaching actor."""
+    """An object has no heading of its own: its wanted side is turned to the actor that comes, be it tail first."""
     side = facing(role.side) if role.side else 0.0
     bearings = ((180, 0.0), (135, 0.05), (-135, 0.05), (90, 0.1), (-90, 0.1))
-    return [Twist(cost, math.radians(degrees) - side) for degrees, cost in bearings]
+    from_behind = 180 if role.other_side == "back" else 0
+    return [Twist(cost, math.radians(degrees - from_behind) - side) for degrees, cost in bearings]
 
 
 def steps_aside() -> list[Drift]:
     """Parallel lines of a pedestrian."""
     return [Drift(abs(left) / 5, left, 1.0, -1e4) for left in (0.0, 0.7, -0.7, 1.5, -1.5, 3.0, -3.0)]
+
+
+def placed_along(role: Role, drift: Drift, twist: Twist, base: Path, clock: tuple[Floats, Floats]) -> Motion:
+    """The places of an object along a path, beside it by a drift and turned by a twist; `clock`: times, stations."""
+    path = base.moved(np.full(len(base.s_m), drift.left_m)).turned(twist.angle_rad)
+    free = np.zeros(len(path.s_m))
+    return Motion(path, *clock, role.size, free, -math.inf, standing=True, fixed=True)

@@ -11,9 +11,20 @@ from dataclasses import dataclass, field, replace
 
 from sgcad_core.planner.actor_plan import Role, is_standing, speed_there
 from sgcad_core.planner.encounter.meeting_place import TURNING, Place, meeting_places, preferred_station
-from sgcad_core.planner.encounter.motion_options import Option, aimed, forced, options, plainly, slid, spun, turned
+from sgcad_core.planner.encounter.motion_options import (
+    Option,
+    aimed,
+    forced,
+    options,
+    plainly,
+    slid,
+    spun,
+    steeply,
+    turned,
+)
 from sgcad_core.planner.encounter.pairing import Encounter, Ways, cannot, search
 from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.departures import departs, departure_station, side_of
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
 from sgcad_core.records.course import Courses, CourseTold
@@ -84,6 +95,11 @@ class Conflicts:
     def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
         """Ordinary driving, other lines of turns, the wanted sides turned to each other, one of the two, odd
         driving."""
+        if implied_crossings(a) or implied_crossings(b):
+            yield (self._options(a, b, _unturned), self._options(b, a, _unturned)), _TRIES[0]
+            plain = self._options(a, b, plainly), self._options(b, a, plainly)
+            yield (self._options(a, b, steeply), plain[1]), _TRIES[0]
+            yield (plain[0], self._options(b, a, steeply)), _TRIES[0]
         yield (self._options(a, b, options), self._options(b, a, options)), _TRIES[0]
         if a.actor.maneuver in TURNING or b.actor.maneuver in TURNING:
             yield (self._options(a, b, turned), self._options(b, a, turned)), _TURNING

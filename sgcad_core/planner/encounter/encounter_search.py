@@ -28,7 +28,7 @@ _SPIN_COST, _GLANCE_COST, _CLEAR_LEVER_M = 0.4, 0.15, 0.6
 _SECANTS = 6
 """Iterations; the time of the overlap is then known to some microseconds."""
 _MOST_SHIFTS = 64
-_LEAST_MARGIN = 0.003
+_LEAST_MARGIN = 0.001
 """Nearer to a diagonal of the box the side depends on tenths of a millimetre."""
 
 

@@ -7,7 +7,7 @@ driver, above that a loss of control.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from sgcad_core.planner.actor_plan import (
     Drift,
@@ -23,6 +23,7 @@ from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.encounter.out_of_lanes import is_out
 from sgcad_core.planner.encounter.pacing_choices import from_another_road
 from sgcad_core.planner.lines.axle_to_box import tightest
+from sgcad_core.planner.lines.crossing import LEAVES, crossings, end_meets_flank
 from sgcad_core.planner.lines.departures import DEPARTURES, aside_m, departs, departure_sides
 from sgcad_core.planner.lines.turning import corner_lines
 
@@ -40,8 +41,9 @@ _OTHER_SIDE, _STAYS_ON_ROAD = 0.25, 2.5
 _OFF_BEHIND_TURN_M = 16.0
 """Length of the way off the road of a vehicle that turns first."""
 ASKEW, _STEERS = "stands askew", "steers aside before contact"
-_LEAVES = "leaves its lane"
 SLIDES = "slides into the contact at an angle that no steering explains"
+_GENTLE = 0.2
+"""Cost of a gentle change of line where a steep one is needed."""
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
 
@@ -53,9 +55,11 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
     """
     if departs(role.actor.maneuver, role.told.departs):
         return _departures(role, fine=fine)
+    steep = _steep(role)
     if role.actor.maneuver in _LANE_CHANGES:
         joins = role.actor.maneuver == "merge" and _joins(role)
         changes = _lane_changes(role, (0.0, 0.8, -0.8) if fine else (0.0,))
+        changes = _behind(steep, changes)
         return [Drift(0.0), *(d._replace(cost=d.cost + 0.2) for d in changes)] if joins else changes
     wanted = _maneuver_shift(role)
     if wanted is not None:
@@ -63,7 +67,7 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
         if role.spins or role.glances:
             shares = [(0.63, 0.0), (1.37, 0.05), (1.0, 0.1), *shares[1:]]
         shares = shares if fine else [shares[0], shares[3], shares[4]]
-        return [*_shifts(role, wanted, shares), Drift(0.8)]
+        return [*_behind(steep, _shifts(role, wanted, shares)), Drift(0.8)]
     near = _in_lane(role) if fine else []
     if evading := _evading(role):
         return [
@@ -72,6 +76,19 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
             *(near_by._replace(cost=near_by.cost + _NOT_EVADING) for near_by in near),
         ]
     return [Drift(0.0), *near, *corner_lines(role), *_other_lanes(role), *_swerves(role)]
+
+
+def _steep(role: Role) -> list[Drift]:
+    """Steep crossings of a told change of line, where an end is told to meet a flank that lies along the way."""
+    if not end_meets_flank(role):
+        return []
+    shift = _maneuver_shift(role)
+    return crossings(role, _change_way(role) if shift is None else math.copysign(1.0, shift))
+
+
+def _behind(first: Sequence[Drift], others: Iterable[Drift]) -> list[Drift]:
+    """Some lines, and others that come behind them."""
+    return [*first, *(d._replace(cost=d.cost + _GENTLE * bool(first)) for d in others)]
 
 
 def _shifts(role: Role, left_m: float, shares: Sequence[tuple[float, float]]) -> Iterator[Drift]:
@@ -183,7 +200,7 @@ def _swerves(role: Role) -> list[Drift]:
     found = []
     if place.apart_m > 1.2 and abs(math.sin(place.angle_rad)) < 0.5 and abs(place.aside_m) < 16:
         for extra, cost in ((0.0, 0.3), (0.7, 0.33), (-0.7, 0.33), (1.4, 0.36), (-1.4, 0.36)):
-            found.append(_drift(role, place.aside_m + extra, cost, 1.3, _LEAVES))
+            found.append(_drift(role, place.aside_m + extra, cost, 1.3, LEAVES))
     found += _from_beside(role)
     for left, cost in ((1.8, 0.4), (-1.8, 0.4), (3.3, 0.6), (-3.3, 0.6)):
         found.append(_drift(role, left, cost, 1.0, "swerves"))
@@ -208,7 +225,7 @@ def _from_beside(role: Role) -> list[Drift]:
 
 def lines_to(role: Role, lefts_m: Sequence[float]) -> list[Drift]:
     """Lines that leave the own one by some distances to the left, the nearest first."""
-    return [_drift(role, left, abs(left) / 10, 1.3, _LEAVES) for left in sorted(lefts_m, key=abs)]
+    return [_drift(role, left, abs(left) / 10, 1.3, LEAVES) for left in sorted(lefts_m, key=abs)]
 
 
 def aiming(role: Role) -> list[Twist]:

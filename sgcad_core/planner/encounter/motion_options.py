@@ -14,7 +14,6 @@ from itertools import product
 
 import numpy as np
 
-from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import (
     BRAKED_TO,
     PUSHED_M,
@@ -43,18 +42,26 @@ from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.encounter.out_of_lanes import OUT, out_of_lanes, stands_out_of_lanes, starts_beside
 from sgcad_core.planner.encounter.pacing_choices import pacings
 from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, cost_outside, in_junction, misfit, waiting_zone
-from sgcad_core.planner.lines.axle_to_box import bent_before, box_path, easiest, offset, tightest
+from sgcad_core.planner.lines.axle_to_box import bent_before, box_path, easiest, offset, skidding, tightest
+from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.path import Path, ramp, widened_bends
 from sgcad_core.planner.lines.turning import corner_lines
-from sgcad_core.planner.motion import HARD_MPS2, YAW_RADPS, Motion, Pace, drive, stand
-from sgcad_core.planner.stationary_actors import any_angle, askew, beside_the_way, in_stall, stand_offs, steps_aside
+from sgcad_core.planner.motion import HARD_MPS2, Motion, Pace, drive, stand
+from sgcad_core.planner.stationary_actors import (
+    any_angle,
+    askew,
+    beside_the_way,
+    in_stall,
+    placed_along,
+    stand_offs,
+    steps_aside,
+)
 from sgcad_core.records.specs import Area
 
 _SWING_ASIDE_M = 5.0
 """Lateral room for steering aside; beyond it the speed is reduced."""
-_MEETS_S = np.linspace(-2.5, 2.5, 11)
-"""Own times at which nearly all encounters are."""
-_PLAIN = 4
+_MEETS_S, _PLAIN = np.linspace(-2.5, 2.5, 11), 4
+"""Own times at which nearly all encounters are, and the number of the most ordinary options."""
 _LEAST_SWING = 1.2
 """Radius when steering aside, over the tightest of the vehicle."""
 _UNBRAKED = 0.3
@@ -135,6 +142,12 @@ def plainly(role: Role) -> list[Option]:
     return [option for option in options(role) if not option.twist.angle_rad][:_PLAIN]
 
 
+def steeply(role: Role) -> list[Option]:
+    """Those whose change of line is steep and implied by what is told; the plain ones where none is."""
+    lines = implied_crossings(role)
+    return _sorted(role, product(lines, pacings(role)[:3], (Twist(0.0),))) if lines else plainly(role)
+
+
 def turned(role: Role) -> list[Option]:
     """All lines and usual speeds of a turn; the plain options of other maneuvers."""
     if role.course.turn is None or role.actor.maneuver not in TURNING:
@@ -176,7 +189,7 @@ def driving(option: Option) -> Motion:
     line, path, drivable = _lines(option, pace)
     time, station = drive(line, pace, place, (path, role.course.path))
     drivable = drivable and not starts_beside(role, line, (time, station))
-    path = _skidding(path, option.twist, place, pace.cruise_mps)
+    path = skidding(path, option.twist, place, pace.cruise_mps)
     begins = _begins(role, drift)
     penalty = misfit(role, path, drift, begins)
     if drift.left_m or drift.before_m or option.twist.angle_rad or option.dodge:
@@ -249,7 +262,8 @@ def standing(option: Option) -> Motion:
 
 def in_the_way(option: Option, other: Option) -> Motion:
     """Places for an object along the line that another actor takes, `left_m` beside it."""
-    return _object_on(option, other.motion.path, *stand(other.motion.path, other.role.place.station_m))
+    path = other.motion.path
+    return placed_along(option.role, option.drift, option.twist, path, stand(path, other.role.place.station_m))
 
 
 def in_path_of(option: Option, other: Motion, side: Area) -> Motion:
@@ -258,21 +272,7 @@ def in_path_of(option: Option, other: Motion, side: Area) -> Motion:
     reach = (other.size[1] if is_beside(side) else other.size[0]) / 2 + 0.3 * option.role.size[0]
     beside = other.path.displaced(reach * np.column_stack((np.cos(out), np.sin(out))))
     beside = replace(beside, heading_rad=out)
-    return _object_on(option, beside, other.time_s, other.station_m)
-
-
-def _object_on(option: Option, base: Path, time_s: Floats, station_m: Floats) -> Motion:
-    path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
-    free = np.zeros(len(path.s_m))
-    return Motion(path, time_s, station_m, option.role.size, free, -math.inf, standing=True, fixed=True)
-
-
-def _skidding(path: Path, twist: Twist, place_m: float, speed_mps: float) -> Path:
-    """The box turns as slowly as its yaw rate allows and keeps its angle from just before the meeting place."""
-    if not twist.angle_rad or not twist.skids:
-        return path
-    length = max(12.0 + 8.0 * abs(twist.angle_rad), 1.875 * abs(twist.angle_rad) * speed_mps / YAW_RADPS)
-    return path.turned(twist.angle_rad * ramp(path.s_m, place_m - 5.0 - length, length))
+    return placed_along(option.role, option.drift, option.twist, beside, (other.time_s, other.station_m))
 
 
 def _begins(role: Role, drift: Drift) -> float:

@@ -13,7 +13,9 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.drivability import REAR_AXLE
-from sgcad_core.planner.lines.path import Path
+from sgcad_core.planner.actor_plan import Twist
+from sgcad_core.planner.lines.path import Path, ramp
+from sgcad_core.planner.motion import YAW_RADPS
 
 _SLIP_RAD = math.radians(9.3)
 """Slip allowed at the center of the box, and at most at the rear axle: under the 10 degrees that count as slip."""
@@ -90,3 +92,11 @@ def _eased(x: Floats) -> Floats:
     last = np.clip(x - rise - hold, 0.0, rise)
     grown: Floats = (first**2 / (2 * rise) + middle + last - last**2 / (2 * rise)) / (1 - rise)
     return grown
+
+
+def skidding(path: Path, twist: Twist, place_m: float, speed_mps: float) -> Path:
+    """The box turns as slowly as its yaw rate allows and keeps its angle from just before the meeting place."""
+    if not twist.angle_rad or not twist.skids:
+        return path
+    length = max(12.0 + 8.0 * abs(twist.angle_rad), 1.875 * abs(twist.angle_rad) * speed_mps / YAW_RADPS)
+    return path.turned(twist.angle_rad * ramp(path.s_m, place_m - 5.0 - length, length))

@@ -125,7 +125,7 @@ def test_sides_that_no_driving_brings_together_are_named_with_those_that_would()
     made = plan(behavior, network("four_leg"), by_force=False)
     assert not made.realised
     assert made.oddity == 0
-    assert any("as they drive, the right of V1 meets the front of V2" in note for note in made.notes)
+    assert any("as they drive, the front of V1 meets the left of V2" in note for note in made.notes)
     assert any(SLIDES in note for note in plan(behavior, network("four_leg")).notes)
 
 
