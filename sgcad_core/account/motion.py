@@ -100,6 +100,9 @@ def _heading(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     if value not in COMPASS:
         return None
     first = float(made.tracks[who].heading_rad[0])
+    vehicle = made.reading.crash.vehicle(who)
+    if vehicle is not None and vehicle.maneuver == "backing" and not vehicle.faces:
+        first += math.pi  # told is where it backs to
     off = abs(float(wrap_angle(np.array([first - angle_of(value)]))[0]))
     seen = compass_of_angle(first)
     return Comparison(off <= _HEADING_RAD, seen, f"it heads {seen}")

@@ -156,8 +156,12 @@ def _vehicle(
 
 
 def _faces(motion: VehicleMotion, heading: Compass | None) -> bool:
-    """Whether a heading is where a vehicle faces: it is told so, or an account in order has it drive there before."""
-    return f"faces {heading}" in motion.sources or (motion.ordered and f"backs {heading}" not in motion.sources)
+    """Whether a heading is where a vehicle faces: it is told so, or it is told to drive there before it backs."""
+    if f"faces {heading}" in motion.sources or f"backs {heading}" in motion.sources:
+        return f"faces {heading}" in motion.sources
+    driven = next((told.source.number for told in motion.headings if told.value == heading), None)
+    backs = next((cue.number for cue in motion.cues if cue.kind == "backing"), None)
+    return motion.ordered or (driven is not None and backs is not None and driven < backs)
 
 
 def _told_before_stop(motion: VehicleMotion, inferred: CrashInferred, vehicle: str) -> bool:
@@ -170,14 +174,15 @@ def _told_before_stop(motion: VehicleMotion, inferred: CrashInferred, vehicle: s
 def _without_vehicle(
     crash: CrashTold, inferred: CrashInferred, beside: tuple[OtherFacts, ...]
 ) -> tuple[ContactFacts, ...]:
-    """What vehicles hit that has no number: objects with the front unless told, people on the side from which they are
-    met as they go, their left one where that is not told."""
+    """What vehicles hit that has no number: things with the end that leads unless told, people on the side from which
+    they are met as they go, their left one where that is not told."""
     ids = {o.word: o for o in beside}
     found: dict[str, ContactFacts] = {}
     for mention in crash.contact_mentions:
         other = ids.get(mention.other)
         if other and other.id not in found:
-            area = end_of(mention.actor_area) or "front"
+            leads: Area = "back" if inferred.maneuvers.get(mention.actor) == "backing" else "front"
+            area = end_of(mention.actor_area) or leads
             faces = (
                 side_facing(crash.walks.get(mention.other, WalkDirection()), inferred.headings.get(mention.actor))
                 or "left"

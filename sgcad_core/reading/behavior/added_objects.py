@@ -14,7 +14,7 @@ from sgcad_core.reading.actors.people_objects import OtherFacts, kind_of_word
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.layout.road_ways import Way, exits, turn_of, ways_of
 from sgcad_core.records.course import ImpactTold
-from sgcad_core.records.specs import Actor, ActorKind, Contact, RoadSpec
+from sgcad_core.records.specs import Actor, ActorKind, Area, Contact, RoadSpec
 
 _SIZE_M: dict[str, tuple[float, float]] = {
     "pole": (0.4, 0.4), "tree": (0.5, 0.5), "post": (0.3, 0.3), "sign": (0.3, 0.8), "signal": (0.4, 0.4),
@@ -45,10 +45,15 @@ def with_roadside(
             continue
         joined.append(_standing(other, driver, endwise=_is_met_endwise(impact, contacts)))
         told.add(impact.after, Contact(
-            striker=vehicle, struck=other.id, striker_area=impact.actor_area or "front",
+            striker=vehicle, struck=other.id, striker_area=impact.actor_area or _leading(driver),
             struck_area="front" if actor_kind(other.kind).thing else "left",
         ))  # fmt: skip
     return tuple(joined), tuple(told.merged(contacts))
+
+
+def _leading(driver: Actor) -> Area:
+    """The side that a vehicle strikes things with where none is told."""
+    return "back" if driver.maneuver == "backing" else "front"
 
 
 @dataclass

@@ -145,6 +145,25 @@ def test_a_departure_is_compared_with_where_the_vehicle_left_the_road(tmp_path, 
     assert (stays.kind, stays.reason) == ("lacks", "it is on the road at its first contact")
 
 
+@pytest.mark.parametrize(("text", "heads"), [
+    ("V1 was backing south on a roadway. V2 was parked behind V1. The back of V1 struck the front of V2.", "N"),
+    ("V1 was southbound. V1 stopped and backed up. V2 was parked. The back of V1 struck the front of V2.", "S"),
+])  # fmt: skip
+def test_a_told_way_of_one_that_backs_is_its_travel_unless_it_drove_so_before(tmp_path, text, heads):
+    from flows.case.chain import CaseRun
+    from flows.case_files.find_cases import Case
+
+    (tmp_path / "report.txt").write_text(text)
+    run = CaseRun(load("template.yaml", ("tracker=none",)), Case(tmp_path, "backs"))
+    run.go()
+    record = run.record()
+    backs = ExecutedCase(record.reading, record.network, record.scenario, record.execution, record.drawn)
+    told = of(motion_items(backs), "vehicles.V1.heading")
+    assert told.kind == "has"
+    faced = float(backs.tracks["V1"].heading_rad[0])
+    assert np.sin(faced) == pytest.approx(1.0 if heads == "N" else -1.0, abs=0.05)
+
+
 def test_motion_is_judged_as_executed_not_as_planned(made):
     """V2 mirrored in time drives backwards along its way."""
     tracks = [
