@@ -193,6 +193,20 @@ def _departs(made: ExecutedCase, who: str, value: Value) -> Comparison:
     return Comparison(wanted in (None, seen), seen, f"it leaves the road on the {seen}")
 
 
+def _to_lane(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
+    """Whether a change of lanes leads into the told one: it lies beside the lane in which the vehicle starts."""
+    vehicle = made.reading.crash.vehicle(who)
+    side = {"lane_change_left": 1, "lane_change_right": -1}.get(vehicle.maneuver if vehicle else "", 0)
+    if not side:
+        return None
+    told = ToldLane(value, None, side) if isinstance(value, int) else ToldLane(None, str(value), side)
+    steps = lane_steps(made.graph, VehicleMotion(made.crash, who).before)
+    first = next((k for k, name in enumerate(steps.lanes) if name), None)
+    at = position(made.graph, steps.lanes[first], side) if first is not None else None
+    seen = f"its change leads into lane {at.place} of {at.lanes}" if at else "its change leads into no lane"
+    return Comparison(told.taken(made.graph, steps), at.place if at else None, seen)
+
+
 def _joins(road_name: Callable[[ExecutedCase, str], str | None]) -> Judge:
     """A comparison of the kind of road that a vehicle comes from or enters."""
 
@@ -225,7 +239,8 @@ def _exit(made: ExecutedCase, who: str) -> str | None:
 
 
 _JUDGES: dict[str, Judge] = {
-    "heading": _heading, "lane": _lane, "lane_word": _lane, "spin_deg": _spin_deg, "rest.side": _side,
+    "heading": _heading, "lane": _lane, "lane_word": _lane, "to_lane": _to_lane,
+    "spin_deg": _spin_deg, "rest.side": _side,
     "rest.attitude": _attitude, "from_stop": _from_rest, "rolls": _rolls, "roll_quarters": _roll_quarters,
     "rolls_to": _rolls_to, "departs": _departs, "origin": _joins(_start), "target": _joins(_exit),
     "rest.distance_m": _distance,

@@ -50,6 +50,8 @@ class VehicleFacts:
     """1 = at the right curb; where counted from the left -1 = the leftmost."""
     lane_word: str | None = None
     """left, right, middle, left_turn, right_turn, center_turn (a two-way left-turn lane)."""
+    to_lane: int | str | None = None
+    """The lane into which it changes, as `lane` or `lane_word`."""
     speed_mph: int | None = None
     trailer: bool = False
     origin: Access | None = None
@@ -148,11 +150,21 @@ def _vehicle(
         heading=inferred.headings.get(v.id), heading_stated=v.id in inferred.stated,
         exit_heading=inferred.exits.get(v.id), maneuver=inferred.maneuvers[v.id],
         maneuver_stated=v.id in inferred.told_maneuvers,
-        lane=motion.lane, lane_word=motion.lane_word, speed_mph=None if over else inferred.speeds.get(v.id),
+        lane=motion.lane or _lane_before(motion, inferred.maneuvers[v.id]), lane_word=motion.lane_word,
+        to_lane=motion.to_lane, speed_mph=None if over else inferred.speeds.get(v.id),
         trailer=v.trailer, origin=motion.origin, target=motion.target,
         meant=meant.maneuver if meant else None, from_stop=from_stop,
         faces=_faces(motion, inferred.headings.get(v.id)),
     )  # fmt: skip
+
+
+def _lane_before(motion: VehicleMotion, maneuver: Maneuver) -> int | None:
+    """The lane beside the one into which it changes, where none is told: 1 at the right curb, -1 the leftmost."""
+    side = {"lane_change_left": 1, "lane_change_right": -1}.get(maneuver, 0)
+    told = {"right": 1, "left": -1}.get(motion.to_lane, 0) if isinstance(motion.to_lane, str) else motion.to_lane
+    if not side or not told or motion.lane_word or told - side == 0:
+        return None
+    return told - side
 
 
 def _faces(motion: VehicleMotion, heading: Compass | None) -> bool:

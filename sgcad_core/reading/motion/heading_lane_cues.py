@@ -8,6 +8,7 @@ from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.language import of_role, rule, values
 from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
+from sgcad_core.reading.roads.lanes import MOST_ONE_WAY
 from sgcad_core.reading.text.compass import compass_of, turned
 from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.records.specs import Compass
@@ -137,25 +138,39 @@ def read_lane(motion: VehicleMotion, text: str, from_median: bool = False) -> No
         center = _center_lane(text, m)
         if center is not None and not rule("surroundings.in_lane").search(text[: center.start()]):
             continue  # of the road: "a five-lane road with a center turn lane"
-        number = m.group("n") or m.group("num")
-        nth = m.group("nth") or m.group("nth2")
-        if nth:
-            counted = values("ordinal").get(nth.lower(), 2)
-            motion.lane = counted if (m.group("from") or m.group("from2")).lower() == "right" else -counted
-        elif number:
-            motion.lane = NUMBERS.get(number.lower()) or (int(number) if number.isdigit() else None)
-            if from_median and m.group("num") and motion.lane:
-                motion.lane = -motion.lane
-        elif m.group("beside") or m.group("curb"):
-            motion.lane = -1 if (m.group("beside") or "").lower() == "left" else 1
-        elif m.group("inner"):
-            motion.lane = -1
-        elif m.group("ord"):
-            motion.lane = values("ordinal")[m.group("ord").lower()]
-        else:
+        motion.lane = _counted(m, from_median)
+        if motion.lane is None:
             motion.lane_word = "center_turn" if center else _lane_word(m)
         motion.read("lane", m.group(), _LANE.id)
         return
+
+
+def read_lane_change(motion: VehicleMotion, text: str, from_median: bool = False) -> None:
+    """Sets the first told lane that a change of lanes leads into, by number or by word; turn lanes are none."""
+    for m in _LANE.finditer(text) if motion.to_lane is None else ():
+        if not m.group("turn") and rule("surroundings.into_lane").search(text[: m.start()]):
+            counted = _counted(m, from_median)
+            if counted is not None and abs(counted) > MOST_ONE_WAY:
+                continue
+            motion.to_lane = _lane_word(m) if counted is None else counted
+            motion.read("to_lane", m.group(), _LANE.id)
+            return
+
+
+def _counted(m: re.Match[str], from_median: bool) -> int | None:
+    """The number of a lane, from the right curb, or from the left if negative; None where a word tells it."""
+    number, nth = m.group("n") or m.group("num"), m.group("nth") or m.group("nth2")
+    if nth:
+        counted = int(values("ordinal").get(nth.lower(), 2))
+        return counted if (m.group("from") or m.group("from2")).lower() == "right" else -counted
+    if number:
+        told = NUMBERS.get(number.lower()) or (int(number) if number.isdigit() else None)
+        return -told if from_median and m.group("num") and told else told
+    if m.group("beside") or m.group("curb"):
+        return -1 if (m.group("beside") or "").lower() == "left" else 1
+    if m.group("inner"):
+        return -1
+    return int(values("ordinal")[m.group("ord").lower()]) if m.group("ord") else None
 
 
 _LEFT_WORDS = ("far left", "left-most", "leftmost", "left", "inside", "passing", "inner")

@@ -16,6 +16,7 @@ from sgcad_core.reading.motion.heading_lane_cues import (
     note_headings_of_mentions,
     read_heading,
     read_lane,
+    read_lane_change,
     read_origin_and_target,
     read_relations,
 )
@@ -119,6 +120,7 @@ def _read(
     read_relations(motion, before_hit, weight, vehicle, roster)
     if segment.role != "rest":
         read_lane(motion, before_hit, from_median)
+        read_lane_change(motion, before_hit, from_median)
         read_origin_and_target(motion, before_hit, after)
 
 

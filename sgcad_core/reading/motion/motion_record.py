@@ -72,6 +72,8 @@ class VehicleMotion:
     lane: int | None = None
     """1 = at the right curb; -1 = the leftmost."""
     lane_word: str | None = None
+    to_lane: int | str | None = None
+    """The lane into which it changes, as `lane` or `lane_word`."""
     speeds_mph: list[WeightedValue] = field(default_factory=list)
     origin: Access | None = None
     target: Access | None = None

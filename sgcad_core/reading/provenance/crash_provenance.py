@@ -135,9 +135,11 @@ def _motion(builder: FactBuilder, v: VehicleFacts, read: StageResults) -> Iterat
     meant = meant_turn(motion)
     if meant and meant.cue:
         yield builder.stated(f"{at}.meant_maneuver", meant.maneuver, meant.cue.source)
-    for name, value in (("lane", v.lane), ("lane_word", v.lane_word)):
+    for name, value in (("lane", motion.lane), ("lane_word", v.lane_word), ("to_lane", v.to_lane)):
         if value is not None:
-            yield builder.stated(f"{at}.{name}", value, motion.sources.get("lane"))
+            yield builder.stated(f"{at}.{name}", value, motion.sources.get("to_lane" if name == "to_lane" else "lane"))
+    if v.lane is not None and motion.lane is None:
+        yield builder.inferred(f"{at}.lane", v.lane, "infer.lane_before", motion.sources.get("to_lane"))
     if v.speed_mph is not None:
         conflict = _differ(motion.speeds_mph, 3)
         yield builder.stated(f"{at}.speed_mph", v.speed_mph, sources.get(f"{v.id} speed"), conflict)
