@@ -199,10 +199,13 @@ class RestFit:
 
     def _costs(self, name: str, course: CourseTold, ends: Floats) -> Floats:
         """(n,) costs of (n, 3) last poses: 1 and more for every missed part."""
-        errors = rest_errors(course.rest, ends, self._came_rad(name), self.surface)
+        errors = self._errors(name, course.rest, ends)
         total = np.zeros(len(ends))
         for error, well, scale in zip(
-            errors, (_WELL_RAD, _WELL_M, _WELL_RAD), (_FACING_SCALE_RAD, 5.0, SIDE_RAD), strict=True
+            errors,
+            (_WELL_RAD, _WELL_M, _WELL_RAD, _WELL_M),
+            (_FACING_SCALE_RAD, 5.0, SIDE_RAD, 5.0),
+            strict=True,
         ):
             if error is not None:
                 total += _TOLD * (error > 0) + np.maximum(error + well, 0.0) / scale
@@ -225,6 +228,10 @@ class RestFit:
         told: Floats = off * (1.0 if course.spin_deg and course.rest.facing_deg is None else way * turned < wanted)
         return told + _TOLD * (way * turned < SPINS_RAD)
 
+    def _errors(self, name: str, rest: RestTold, ends: Floats) -> RestErrors:
+        """Errors of (n, 3) last poses of a vehicle."""
+        return rest_errors(rest, ends, self._came_rad(name), self.surface, self.scene.tracks[name].driven[0])
+
     def _came_rad(self, name: str) -> float:
         """An actor's heading at the first contact, as its motion had it."""
         return float(self.scene.tracks[name].driven[self.scene.contact, 2])
@@ -236,7 +243,7 @@ class RestFit:
         return notes + [note for name, course in self.wanted.items() for note in self._missed(name, course.rest)]
 
     def _missed(self, name: str, rest: RestTold) -> Iterator[str]:
-        errors = rest_errors(rest, self.scene.tracks[name].poses[-1:], self._came_rad(name), self.surface)
+        errors = self._errors(name, rest, self.scene.tracks[name].poses[-1:])
         yield from (f"{name} {words}" for words in _in_words(rest, errors))
         if rest.distance_m is not None:
             way = float(self._way_m(name, self.scene.tracks[name].poses[-1:])[0])
@@ -245,7 +252,7 @@ class RestFit:
 
 
 def _in_words(rest: RestTold, errors: RestErrors) -> Iterator[str]:
-    facing, where, side = errors
+    facing, where, side, lane = errors
     if facing is not None and facing[0] > 0:
         off = math.degrees(float(facing[0]) + FACING_RAD)
         yield f"comes to rest facing {off:.0f} degrees off what is told"
@@ -253,3 +260,10 @@ def _in_words(rest: RestTold, errors: RestErrors) -> Iterator[str]:
         yield f"comes to rest {float(where[0]):.1f} m from the told place ({(rest.where or '').replace('_', ' ')})"
     if side is not None and side[0] > 0:
         yield f"comes to rest on another side than told ({rest.side})"
+    if lane is not None and lane[0] > 0:
+        yield f"comes to rest {float(lane[0]):.1f} m from the told {_lane_in_words(rest)}"
+
+
+def _lane_in_words(rest: RestTold) -> str:
+    named = f"lane {rest.lane}" if isinstance(rest.lane, int) else f"{rest.lane or ''} lane".replace("_", " ")
+    return " ".join(filter(None, [named.strip(), f"({rest.lane_way})" if rest.lane_way else ""]))
