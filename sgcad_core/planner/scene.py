@@ -25,7 +25,7 @@ from sgcad_core.planner.aftermath.wreck_bodies import Mover, Touch
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import STEP_S, Motion, clock
 from sgcad_core.records.course import NOTHING_TOLD, Courses, CourseTold
-from sgcad_core.records.specs import ActorKind, Surface
+from sgcad_core.records.specs import ActorKind, Area, Surface
 
 AFTER_S = 5.0
 """From the first contact to the end: from 80 mph at 0.75 g all stand by then."""
@@ -108,6 +108,8 @@ class Scene:
     restitution: float = RESTITUTION
     again: frozenset[frozenset[str]] = frozenset()
     """Pairs with a stated second contact."""
+    sides: dict[frozenset[str], dict[str, Area]] = field(default_factory=dict)
+    """The sides of the second contacts, by actor."""
     told: frozenset[frozenset[str]] = frozenset()
     """Pairs with a stated contact after the first."""
     _settled: dict[Hashable, _Settled] = field(default_factory=dict, repr=False)

@@ -20,7 +20,6 @@ from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.rest_error import FACING_RAD, SIDE_RAD, SPINS_RAD, RestErrors, near_m, rest_errors
 from sgcad_core.planner.aftermath.ground_friction import Released, run_out_paths
 from sgcad_core.planner.aftermath.rest_candidates import (
-    MISSED,
     BlowWays,
     Choice,
     VehicleWays,
@@ -29,6 +28,7 @@ from sgcad_core.planner.aftermath.rest_candidates import (
     oddities,
 )
 from sgcad_core.planner.aftermath.rollover import rolls_over
+from sgcad_core.planner.aftermath.second_contact import missed_again
 from sgcad_core.planner.aftermath.told_order import ToldOrder
 from sgcad_core.planner.later_courses import RunOuts, run_outs, with_run
 from sgcad_core.planner.motion import STEP_S
@@ -49,6 +49,8 @@ _LAST_RUNS = 2
 """Run-outs behind the last touch of a vehicle that are simulated."""
 _WHOLE = 3
 """Whole simulations at most, beyond one for each friction and restitution."""
+_WHOLE_AGAIN = 10
+"""The same where the two meet again: where they then push each other depends on more."""
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
 """Margin inside the allowed error that counts as best."""
 _FACING_SCALE_RAD = math.radians(45.0)
@@ -86,7 +88,7 @@ class RestFit:
             return
         best, least = self._choice(), self.cost()
         ways: list[BlowWays] = []
-        for number in range(len(self.impacts) + _WHOLE):
+        for number in range(len(self.impacts) + (_WHOLE_AGAIN if self.scene.again else _WHOLE)):
             if least <= self._well:
                 break
             if number < len(self.impacts):
@@ -166,8 +168,10 @@ class RestFit:
         until = scene.contact + round(_BLOW_S / STEP_S)
         wreck = scene.wreck()
         wreck.settle(until)
-        found = BlowWays(friction, restitution, bool(scene.again))
         free = [name for name in self.wanted if wreck.named[name].free and not wreck.named[name].fixed]
+        told = scene.sides.get(frozenset(free), {})
+        sides = (told.get(free[0]), told.get(free[-1])) if free else (None, None)
+        found = BlowWays(friction, restitution, bool(scene.again), sides)
         if not free:
             return found
         at_s, end_s = until * STEP_S, (scene.count - 4) * STEP_S
@@ -189,7 +193,7 @@ class RestFit:
     def cost(self) -> float:
         """The cost of the settled scene: its distance from what is stated."""
         ends = {name: self.scene.tracks[name].poses[-1:] for name in self.wanted}
-        missed = sum(MISSED for pair in self.scene.again if not self._meet_again(pair))
+        missed = sum(missed_again(self.scene, pair) for pair in self.scene.again if pair <= self.scene.tracks.keys())
         missed += 0.0 if self.order is None or self.order.kept else _PARTED
         return missed + sum(float(self._costs(name, course, ends[name])[0]) for name, course in self.wanted.items())
 
@@ -238,8 +242,12 @@ class RestFit:
 
     def missed(self) -> list[str]:
         """Notes on the stated rests that are not reached, with the errors."""
-        apart = [" and ".join(sorted(pair)) for pair in self.scene.again if not self._meet_again(pair)]
-        notes = [f"{pair} do not touch a second time, as is told" for pair in apart]
+        notes = []
+        for pair in self.scene.again:
+            if not self._meet_again(pair):
+                notes.append(f"{' and '.join(sorted(pair))} do not touch a second time, as is told")
+            elif pair <= self.scene.tracks.keys() and missed_again(self.scene, pair):
+                notes.append(f"{' and '.join(sorted(pair))} touch a second time on other sides than told")
         return notes + [note for name, course in self.wanted.items() for note in self._missed(name, course.rest)]
 
     def _missed(self, name: str, rest: RestTold) -> Iterator[str]:
