@@ -25,6 +25,7 @@ from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.meeting_place import Place, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.near_miss import as_near_miss
+from sgcad_core.planner.encounter.off_center import is_passed
 from sgcad_core.planner.encounter.pacing_choices import ROLLS_IN
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.encounter.try_elsewhere import WholeCourse, least_missed
@@ -227,7 +228,9 @@ class _Cast:
         """Lets a thing that is struck first give way where its vehicle strikes something else after it."""
         track = scene.tracks[first.struck]
         if track.motion.fixed and any(first.striker in (c.striker, c.struck) for c in self.contacts[1:]):
-            track.give_way()
+            track.firm = is_passed(self.actors[first.struck], first.striker_area)
+            if not track.firm:
+                track.give_way()
 
     def _look(self, scene: Scene, pair: Iterable[tuple[Option, Motion, float]]) -> None:
         """Notes which stated maneuvers and evasions are not visible before the contact."""

@@ -24,6 +24,7 @@ from sgcad_core.planner.aftermath.wreck_bodies import (
     center_of,
     fastest_closing,
     first_sample,
+    glances,
     key_of,
     last_move,
     may_meet,
@@ -237,6 +238,8 @@ class Wreck:
     def _touches(self, a: Mover, b: Mover, seen: Separation, sample: int) -> bool:
         """Whether a pair is in touch; both are free from the first time on."""
         key = key_of(a, b)
+        if key in self.gone:
+            return False
         if key in self.touches and seen.gap_m > _PARTED_M and frozenset(key) in self.again:
             self.past.append((self.touches.pop(key), key))
         if key in self.touches:
@@ -249,7 +252,9 @@ class Wreck:
         self.touches[key] = self.now
         for m in (a, b):
             self._release(m, sample)
-        return True
+        if glances(a, b):
+            self.gone.add(key)
+        return key not in self.gone
 
     def _release(self, m: Mover, sample: int) -> None:
         """Frees a body and what is coupled to it."""

@@ -12,6 +12,7 @@ from itertools import islice
 from sgcad_core.kinds import RAMP, actor_kind
 from sgcad_core.reading.actors.people_objects import OtherFacts, kind_of_word
 from sgcad_core.reading.crash_facts import CrashFacts
+from sgcad_core.reading.language import rule
 from sgcad_core.reading.layout.road_ways import Way, exits, turn_of, ways_of
 from sgcad_core.records.course import ImpactTold
 from sgcad_core.records.specs import Actor, ActorKind, Contact, RoadSpec
@@ -43,12 +44,19 @@ def with_roadside(
         driver = next((a for a in actors if a.id == vehicle), None)
         if driver is None or len(joined) >= most[0] or len(told.further) + len(contacts) >= most[1]:
             continue
-        joined.append(_standing(other, driver, endwise=_is_met_endwise(impact, contacts)))
+        joined.append(_held(_standing(other, driver, endwise=_is_met_endwise(impact, contacts)), other.word))
         told.add(impact.after, Contact(
             striker=vehicle, struck=other.id, striker_area=impact.actor_area or "front",
             struck_area="front" if actor_kind(other.kind).thing else "left",
         ))  # fmt: skip
-    return tuple(joined), tuple(told.merged(contacts))
+    words = {other.id: other.word for other in facts.others}
+    return tuple(_held(actor, words.get(actor.id, "")) for actor in joined), tuple(told.merged(contacts))
+
+
+def _held(actor: Actor, word: str) -> Actor:
+    """The actor, firm where it is a thing that does not give way."""
+    firm = actor.record.thing and rule("course_impacts.firm").search(word) is not None
+    return actor.model_copy(update={"firm": True}) if firm else actor
 
 
 @dataclass
