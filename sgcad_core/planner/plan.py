@@ -226,19 +226,15 @@ class _Cast:
 
     def _let_through(self, scene: Scene, first: Contact) -> None:
         """Lets a thing that is struck first give way where its vehicle strikes something else after it."""
-        track = scene.tracks[first.struck]
-        if track.motion.fixed and any(first.striker in (c.striker, c.struck) for c in self.contacts[1:]):
-            track.firm = is_passed(self.actors[first.struck], first.striker_area)
-            if not track.firm:
-                track.give_way()
+        track, goes_on = scene.tracks[first.struck], any(first.striker in pair_of(c) for c in self.contacts[1:])
+        if track.motion.fixed and goes_on:
+            track.let_pass(stays=is_passed(self.actors[first.struck], first.striker_area))
 
     def _look(self, scene: Scene, pair: Iterable[tuple[Option, Motion, float]]) -> None:
         """Notes which stated maneuvers and evasions are not visible before the contact."""
-        for option, motion, _ in pair:
+        for option in (one for one, motion, _ in pair if not motion.standing):
             role = option.role
             until = scene.tracks[role.actor.id].driven[: scene.contact + 1]
-            if motion.standing:
-                continue
             if words := unseen_maneuver(role.actor, role.course, until):
                 self.notes.append(words)
                 self.missed += _MANEUVER_MISSED

@@ -74,6 +74,12 @@ class Track:
     def __post_init__(self) -> None:
         self.driven = self.poses
 
+    def let_pass(self, *, stays: bool) -> None:
+        """Lets what strikes it go on: off a thing that stays, or past one that gives way."""
+        self.firm = stays
+        if not stays:
+            self.give_way()
+
     def give_way(self) -> None:
         """Lets what strikes it go on past it: people are thrown aside, of things a breakaway post or a piece."""
         self.motion, self.gives_way = replace(self.motion, fixed=False), True

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import Floats, Size, gaps_where_near
 from sgcad_core.planner.aftermath.ground_friction import RunOut
-from sgcad_core.planner.aftermath.second_contact import MISSED, WRONG_SIDE, Sides, wrong_sides
+from sgcad_core.planner.aftermath.second_contact import MISSED, NOT_AGAIN, WRONG_SIDE, Sides, wrong_sides
 
 Ints = NDArray[np.int_]
 
@@ -139,7 +139,7 @@ class BlowWays:
         met = apart & (gaps <= 0.0)
         at = met.argmax(axis=0)
         wrong = wrong_sides((a.ways[at, first], a.size), (b.ways[at, second], b.size), self.sides)
-        cost: Floats = np.where(met.any(axis=0), WRONG_SIDE * wrong, MISSED)
+        cost: Floats = np.where(met.any(axis=0), WRONG_SIDE * wrong, NOT_AGAIN)
         return cost
 
     def _in_each_other(self, known: tuple[int, ...]) -> bool:

@@ -13,9 +13,10 @@ from sgcad_core.planner.scene import Scene
 from sgcad_core.records.specs import Area
 
 MISSED = 1.5
-"""Cost of a stated second contact that does not happen."""
-WRONG_SIDE = 0.6
-"""The same of each side on which it happens otherwise than stated: any second contact is better than none."""
+"""Cost of a stated contact behind the first one that does not happen."""
+NOT_AGAIN, WRONG_SIDE = 2.4, 1.0
+"""The same of a second contact of the first two, and of each side on which it happens otherwise than stated: any second
+contact is better than none."""
 _APART = 3
 """Samples for which two are apart before they touch anew."""
 _OVERLAP_M = 1e-6
@@ -29,7 +30,7 @@ def missed_again(scene: Scene, pair: frozenset[str]) -> float:
     told = tuple(scene.sides.get(pair, {}).get(name) for name in names)
     one, other = (scene.tracks[name] for name in names)
     seen = _again(one.poses, other.poses, one.size, other.size)
-    return min((WRONG_SIDE * _differing(told, sides) for sides in seen), default=MISSED)
+    return min((WRONG_SIDE * _differing(told, sides) for sides in seen), default=NOT_AGAIN)
 
 
 def _differing(told: tuple[Area | None, ...], seen: tuple[Area, ...]) -> int:

@@ -12,7 +12,6 @@ from itertools import islice
 from sgcad_core.kinds import RAMP, actor_kind
 from sgcad_core.reading.actors.people_objects import OtherFacts, kind_of_word
 from sgcad_core.reading.crash_facts import CrashFacts
-from sgcad_core.reading.language import rule
 from sgcad_core.reading.layout.road_ways import Way, exits, turn_of, ways_of
 from sgcad_core.records.course import ImpactTold
 from sgcad_core.records.specs import Actor, ActorKind, Contact, RoadSpec
@@ -25,6 +24,12 @@ _SIZE_M: dict[str, tuple[float, float]] = {
     "snowbank": (1.5, 4.0), "dumpster": (1.8, 2.0), "bridge": (0.8, 5.0), "abutment": (1.0, 3.0),
 }  # fmt: skip
 """Depth and width of things as a car meets them, metres; others are posts."""
+_FIRM = frozenset((
+    "tree", "trunk", "stump", "pole", "hydrant", "wall", "rock", "stone", "boulder", "border", "guardrail", "rail",
+    "railing", "barrier", "embankment", "bridge", "abutment", "building", "house", "column", "pillar", "garage",
+    "culvert",
+))  # fmt: skip
+"""Things that stay where they stand when a vehicle glances off them."""
 _USUAL_M = (0.4, 0.4)
 _LONG_M = 1.5
 """Width from which a thing stands along the road."""
@@ -55,7 +60,7 @@ def with_roadside(
 
 def _held(actor: Actor, word: str) -> Actor:
     """The actor, firm where it is a thing that does not give way."""
-    firm = actor.record.thing and rule("course_impacts.firm").search(word) is not None
+    firm = actor.record.thing and word.lower().rpartition(" ")[2].rstrip("s") in _FIRM
     return actor.model_copy(update={"firm": True}) if firm else actor
 
 
