@@ -32,7 +32,7 @@ def contact_items(made: ExecutedCase) -> Iterator[Item]:
         yield from _sides(made, number, contact, times)
         last = max(last, times[0]) if times and not crash.unnumbered else last
     for number, impact in enumerate(crash.impacts):
-        yield _impact(made, number, impact)
+        yield from _impact(made, number, impact)
 
 
 def _pair(a: str, b: str) -> frozenset[str]:
@@ -94,20 +94,29 @@ def _areas(seen: ObservedContact) -> dict[str, Area]:
     return {seen.actor: seen.actor_area, seen.other: seen.other_area}
 
 
-def _impact(made: ExecutedCase, number: int, impact: ImpactTold) -> Item:
-    """A contact behind the first one, or with a thing."""
+def _impact(made: ExecutedCase, number: int, impact: ImpactTold) -> Iterator[Item]:
+    """A contact behind the first one, or with a thing, and the sides that touch in it."""
     letter = _letter(impact.other)
     vehicle = made.reading.crash.vehicle(impact.other) is not None
     met = [
-        t for t, a, b in made.crash.touches
+        (t, a, b) for t, a, b in made.crash.touches
         if impact.actor in (a, b) and (impact.other in (a, b) if vehicle else {a[0], b[0]} >= {letter, impact.actor[0]})
     ]  # fmt: skip
     again = vehicle and any(_pair(c.striker, c.struck) == _pair(impact.actor, impact.other)
                             for c in made.reading.crash.contacts)  # fmt: skip
-    has = len(met) > int(again)
+    further = met[int(again) :]
     text = f"{impact.actor} strikes {impact.other}{' once more' if again else ''}"
     why = "the two touch once only" if met and again else "does not come about"
-    return made.item(has, f"impacts.{number}.other", impact.other, why=why, text=text)
+    yield made.item(bool(further), f"impacts.{number}.other", impact.other, why=why, text=text)
+    for who, told, name in (
+        (impact.actor, impact.actor_area, "actor_area"),
+        (impact.other, impact.other_area if vehicle else None, "other_area"),
+    ):
+        if told is not None:
+            seen = [_areas(made.touch(t, (a, b))).get(who) for t, a, b in further]
+            side = next((area for area in seen if area == told), seen[0] if seen else None)
+            field, words = f"impacts.{number}.{name}", f"{text}: {told} of {who}"
+            yield made.item(side == told, field, told, side, why=f"the {side} touches" if side else why, text=words)
 
 
 def _letter(word: str) -> str:

@@ -21,10 +21,11 @@ from sgcad_core.metrics.labels.observed_crash import VehicleMotion
 from sgcad_core.metrics.lane_places import lane_steps
 from sgcad_core.metrics.rest_error import attitude_of, near_m
 from sgcad_core.metrics.road_departure import hand_of, left_road
-from sgcad_core.metrics.told_lanes import LANE_WORDS, TURN_LANES, ToldLane, position, told_lane
+from sgcad_core.metrics.told_lanes import LANE_WORDS, TURN_LANES, ToldLane, told_lane
 from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
 from sgcad_core.records.course import DepartureSide
 from sgcad_core.records.facts import Fact, Value
+from sgcad_core.roads.lane_positions import position
 
 _HEADING_RAD = math.radians(45.0 + 22.5)
 """A heading is right within an eighth of the circle beside the compass word's own eighth, as the scorers have it."""
@@ -152,6 +153,13 @@ def _distance(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     return Comparison(abs(seen - value) <= near_m(value), round(seen, 1), f"it comes to rest {seen:.0f} m from there")
 
 
+def _rest_lane(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
+    """Whether it comes to rest in the told lane, or in one of the told direction."""
+    course = made.reading.crash.courses.get(who)
+    marks = VehicleMotion(made.crash, who).rest(course.rest) if course else {}
+    return Comparison(marks["lane"], why="it comes to rest in another lane") if "lane" in marks else None
+
+
 def _attitude(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     seen = attitude_of(float(made.tracks[who].rolls[-1]))
     return Comparison(seen == value, seen, f"it comes to rest on its {_LIES[seen]}")
@@ -243,5 +251,5 @@ _JUDGES: dict[str, Judge] = {
     "spin_deg": _spin_deg, "rest.side": _side,
     "rest.attitude": _attitude, "from_stop": _from_rest, "rolls": _rolls, "roll_quarters": _roll_quarters,
     "rolls_to": _rolls_to, "departs": _departs, "origin": _joins(_start), "target": _joins(_exit),
-    "rest.distance_m": _distance,
+    "rest.distance_m": _distance, "rest.lane": _rest_lane, "rest.lane_way": _rest_lane,
 }  # fmt: skip

@@ -10,11 +10,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import Floats, wrap_angle
-from sgcad_core.records.course import Attitude, Hand, RestTold
+from sgcad_core.metrics.told_lanes import ToldLane
+from sgcad_core.records.course import Attitude, Hand, RestLane, RestTold
 from sgcad_core.records.specs import Compass
-from sgcad_core.roads.surface import RoadSurface
+from sgcad_core.roads.surface import OfLane, RoadSurface
 
 COMPASS_DEG: dict[str, float] = {
     "N": 0.0, "NE": 45.0, "E": 90.0, "SE": 135.0, "S": 180.0, "SW": 225.0, "W": 270.0, "NW": 315.0,
@@ -36,6 +38,13 @@ _JUNCTION_M = 1.5
 """Distance out of the area of a junction at which a center still counts as in the intersection."""
 _CORNER_M = 45.0
 """A side is seen from the center of a junction within this distance."""
+_LANE_EDGE_M = 0.3
+"""By which a center may lie over the edge of its lane, as in `lane_places`."""
+_SAME_WAY_RAD, _WAY_RAD = math.radians(120.0), math.radians(50.0)
+"""A lane without a stated direction runs within this angle of the vehicle's heading at its first contact: it does not
+run against it; one with a stated direction runs within this angle of that."""
+_NO_LANE_M = 20.0
+"""Error where no such lane is drawn."""
 
 
 class RestErrors(NamedTuple):
@@ -45,25 +54,33 @@ class RestErrors(NamedTuple):
     """Beyond what is allowed."""
     where_m: Floats | None
     side_rad: Floats | None
+    lane_m: Floats | None = None
+    """Beyond the edge of the stated lane."""
 
     def right(self) -> dict[str, bool]:
         """By stated part whether a single pose is right."""
         return {
             name: bool(error[0] <= 1e-9)
-            for name, error in zip(("facing", "where", "side"), self, strict=True)
+            for name, error in zip(("facing", "where", "side", "lane"), self, strict=True)
             if error is not None
         }
 
 
-def rest_errors(told: RestTold, poses: Floats, came_rad: float, surface: RoadSurface) -> RestErrors:
-    """Errors of (n, 3) poses at rest; `came_rad`: the vehicle's heading before its first contact."""
-    off, bearing = surface.off(poses[:, :2])
+def rest_errors(
+    told: RestTold, poses: Floats, came_rad: float, surface: RoadSurface, began: Floats | None = None
+) -> RestErrors:
+    """Errors of (n, 3) poses at rest.
+
+    `came_rad`: the vehicle's heading before its first contact; `began`: (3,) its first pose, for what is told of the
+    lane in which it began.
+    """
+    off, bearing, nearest = surface.nearest(poses[:, :2])
     facing = None if told.facing_deg is None else _apart(poses[:, 2], compass_rad(told.facing_deg)) - FACING_RAD
-    where = None if told.where is None else _misplaced(told, poses, off, surface)
+    where = None if told.where is None else _misplaced(told, poses, (off, bearing, nearest), surface)
     side = None if told.side is None or told.where in ("road", "intersection") else (
         np.where(off < SHOULDER_M[0], math.pi, _beside(told.side, poses, bearing, came_rad, surface)) - SIDE_RAD
     )  # fmt: skip
-    return RestErrors(facing, where, side)
+    return RestErrors(facing, where, side, _beside_lane(told, poses, came_rad, surface, began))
 
 
 def near_m(distance_m: float) -> float:
@@ -86,19 +103,73 @@ def _apart(angles: Floats, wanted: float) -> Floats:
     return np.abs(wrap_angle(angles - wanted))
 
 
-def _misplaced(told: RestTold, poses: Floats, off: Floats, surface: RoadSurface) -> Floats:
+def _misplaced(
+    told: RestTold, poses: Floats, near: tuple[Floats, Floats, NDArray[np.int_]], surface: RoadSurface
+) -> Floats:
     """Distance from the stated kind of place, metres; 0 or less is right."""
+    off, bearing, nearest = near
     if told.where == "road":
         return off - OFF_M
     if told.where == "shoulder":
         return np.maximum(SHOULDER_M[0] - off, off - SHOULDER_M[1])
     if told.where == "intersection" and surface.junctions:
         out = [np.hypot(poses[:, 0] - x, poses[:, 1] - y) - r for x, y, r in surface.junctions]
-        nearest: Floats = np.min(out, axis=0) - _JUNCTION_M
-        return nearest
+        closest: Floats = np.min(out, axis=0) - _JUNCTION_M
+        return closest
     if told.where == "intersection":
         return off - OFF_M
-    return OFF_M + 0.05 - off
+    beyond = OFF_M + 0.05 - off
+    if told.where == "median":  # left of a lane without one beside it: between two carriageways
+        on_right = np.sin(bearing - surface.ways[nearest]) < 0.0
+        beyond = np.where((off > 0.0) & on_right, off, beyond)
+    return beyond
+
+
+def _beside_lane(
+    told: RestTold, poses: Floats, came_rad: float, surface: RoadSurface, began: Floats | None
+) -> Floats | None:
+    """Distance beyond the edge of the stated lane, metres; None where none is stated, or none can be found."""
+    if not told.in_lane or not surface.lanes or (told.lane == "own" and began is None):
+        return None
+    ways = surface.ways
+    if told.lane == "own" and began is not None:
+        fits, along = _own_lanes(surface, began), _apart(ways, float(began[2])) < _SAME_WAY_RAD
+    else:
+        fits = np.array([_is_lane(told.lane, lane) for lane in surface.lanes])
+        along = _apart(ways, came_rad) < _SAME_WAY_RAD
+    if told.lane_way is not None:
+        along = _apart(ways, compass_rad(COMPASS_DEG[told.lane_way])) < _WAY_RAD
+    chosen = np.flatnonzero(fits & (along | np.array([lane == "center" for lane in surface.lanes])))
+    if not len(chosen):
+        return np.full(len(poses), _NO_LANE_M)
+    return surface.part(chosen.tolist()).off(poses[:, :2])[0] - _LANE_EDGE_M
+
+
+def _is_lane(told: int | RestLane | None, lane: OfLane) -> bool:
+    """Whether a piece of the surface is a part of a stated lane; None: of any for cars."""
+    if lane == "center":
+        return told in ("center_turn", "left_turn")
+    if lane == "junction" or told == "center_turn":
+        return False
+    if told is None:
+        return True
+    number, word = (told, None) if isinstance(told, int) else (None, told)
+    return ToldLane(number, word).is_at(lane)
+
+
+def _own_lanes(surface: RoadSurface, began: Floats) -> NDArray[np.bool_]:
+    """(n,) the pieces of lanes that lie as the lane in which a vehicle began, from the right or from the left."""
+    along = np.cos(surface.ways - began[2]) > 0.0
+    lanes = [n for n in np.flatnonzero(along).tolist() if not isinstance(surface.lanes[n], str)]
+    if not lanes:
+        return np.zeros(len(surface.lanes), bool)
+    home = surface.lanes[lanes[int(surface.part(lanes).nearest(began[None, :2])[2][0])]]
+    return np.array([
+        not isinstance(lane, str) and not isinstance(home, str)
+        and (lane.place == home.place or lane.lanes - lane.place == home.lanes - home.place)
+        and (lane.lanes != home.lanes or lane.place == home.place)
+        for lane in surface.lanes
+    ])  # fmt: skip
 
 
 def _beside(side: Compass | Hand, poses: Floats, bearing: Floats, came_rad: float, surface: RoadSurface) -> Floats:

@@ -10,25 +10,12 @@ from typing import NamedTuple
 from sgcad_core.metrics.lane_places import LaneSteps
 from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.layout.lanes_used import CENTER, CHANGES
-from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
+from sgcad_core.roads.lane_graph import LaneGraph
+from sgcad_core.roads.lane_positions import Position, position
 
 LANE_WORDS = ("left", "right", "middle", "left_turn", "right_turn", CENTER)
-_THROUGH = "through"
 _OUTERMOST = {1: ("left", "left_turn", CENTER), -1: ("right", "right_turn")}
 TURN_LANES = {"left_turn": "left", "right_turn": "right"}
-
-
-class Position(NamedTuple):
-    """A lane of an edge: its place from the right curb, of how many, and the ways that lead out of it."""
-
-    place: int
-    lanes: int
-    leads: frozenset[str]
-    all_lead: frozenset[str]
-    """The ways that lead out of any lane of the edge."""
-    first_through: int
-    """The rightmost lane that leads straight on; 1 where none does."""
-    last_through: int
 
 
 class ToldLane(NamedTuple):
@@ -92,19 +79,3 @@ def told_lane(vehicle: VehicleFacts) -> ToldLane | None:
     side = 1 if passes else CHANGES.get(vehicle.maneuver, 0)
     outermost = vehicle.lane == -side or (vehicle.lane is None and vehicle.lane_word in _OUTERMOST.get(side, ()))
     return ToldLane(vehicle.lane, vehicle.lane_word if vehicle.lane is None else None, side if outermost else 0)
-
-
-def position(graph: LaneGraph, lane: str, side: int = 0) -> Position | None:
-    """Where a lane for cars, or the one on some side of it (1: left), lies among those of its edge; None for others."""
-    edge = graph.edges.get(lane.rpartition("_")[0])
-    lanes = edge.laid_lanes if edge else ()
-    place = next((i + side for i, other in enumerate(lanes, 1) if other.id == lane), None)
-    if edge is None or place is None or not 1 <= place <= len(lanes):
-        return None
-    leads = [_leads(graph, edge, other) for other in lanes]
-    through = [i for i, ways in enumerate(leads, 1) if _THROUGH in ways] or [1, len(lanes)]
-    return Position(place, len(lanes), leads[place - 1], frozenset().union(*leads), through[0], through[-1])
-
-
-def _leads(graph: LaneGraph, edge: Edge, lane: Lane) -> frozenset[str]:
-    return frozenset(c.direction for c in graph.leaving(edge.id, lane.index))

@@ -17,7 +17,7 @@ from sgcad_core.geometry.plane import Floats, Size, gaps_where_near
 from sgcad_core.planner.actor_plan import facing, is_beside
 from sgcad_core.planner.aftermath.struck_objects import Strike, standing_track
 from sgcad_core.planner.motion import STEP_S
-from sgcad_core.planner.scene import Scene, Track
+from sgcad_core.planner.scene import TUMBLING_MPS2, Scene, Track
 from sgcad_core.records.specs import Area, size_m
 from sgcad_core.roads.surface import RoadSurface
 
@@ -33,12 +33,13 @@ _CORNER = 0.34
 _DEPTH_M, _SHARE = 0.12, 0.6
 """Overlap at the sample of the contact, at most that share of a step."""
 _GRAZED_M = 0.06
+_GLANCED_M, _GLANCED_MOST_M = 0.1, 0.3
+"""Overlap with a firm thing beside the way, and the most of it while the vehicle passes."""
 _OFF_ROAD_M = 0.3
 _PASSES_M = 0.12
 """Gap at which the vehicle then passes it."""
 _ASIDE = 3
 """Samples in which it is thrown out of the way."""
-_SLIDES_MPS2 = 6.0
 _SIDEWAYS_MPS = 1.5
 _FLIES = 0.8
 """Share of the vehicle's speed with which it leaves."""
@@ -107,6 +108,9 @@ def _places(scene: Scene, strike: Strike, samples: Sequence[int]) -> Iterator[_P
         along = 1.0 if side == "front" else -1.0
         ahead_m = along * (track.size[0] / 2 + size[0] / 2 - min(_DEPTH_M, _SHARE * by_m))
         for hand in (-1.0, 1.0):
+            if strike.thing.firm:
+                yield _Place(k, side, ahead_m, hand * ((track.size[1] + size[1]) / 2 - _GLANCED_M), 0.0)
+                continue
             clear_m = track.size[1] / 2 + size[1] / 2 + _PASSES_M
             left_m = min(_CORNER * track.size[1] + max(size[1] / 2 - 0.4, 0.0), clear_m - 0.3)
             yield _Place(k, side, ahead_m, hand * left_m, hand * (clear_m - left_m))
@@ -131,12 +135,15 @@ def _thrown(scene: Scene, strike: Strike, place: _Place) -> Track:
     poses[: k + 1] = _beside(driven[k], place.ahead_m, place.left_m, turn)
     poses[:k] += _walked(strike, poses[k], k)
     grazed = is_beside(place.side)
-    for j in range(1, _ASIDE + 1):
+    for j in range(1, 1 if strike.thing.firm else _ASIDE + 1):
         share = 1.0 if grazed else j / _ASIDE
         base = driven[k] if grazed else driven[min(k + j, scene.count - 1)]
         poses[min(k + j, scene.count - 1)] = _beside(base, place.ahead_m, place.left_m + share * place.outward_m, turn)
     last = min(k + _ASIDE, scene.count - 1)
-    poses[last:] = poses[last] if grazed else poses[last] + _slide(driven, k, place, scene.count - last)
+    if strike.thing.firm:
+        poses[k:] = poses[k]
+    else:
+        poses[last:] = poses[last] if grazed else poses[last] + _slide(driven, k, place, scene.count - last)
     track = standing_track(scene, strike.thing, poses[k])
     track.poses, track.driven, track.hit = poses, poses, k
     return track
@@ -163,8 +170,8 @@ def _slide(driven: Floats, k: int, place: _Place, count: int) -> Floats:
     hand = math.copysign(_SIDEWAYS_MPS, place.outward_m)
     speed = speed + hand * np.array([-math.sin(heading), math.cos(heading)])
     mps = math.hypot(*speed)
-    time = np.minimum(np.arange(count) * STEP_S, mps / _SLIDES_MPS2)
-    way = time - _SLIDES_MPS2 * time**2 / (2 * mps)
+    time = np.minimum(np.arange(count) * STEP_S, mps / TUMBLING_MPS2)
+    way = time - TUMBLING_MPS2 * time**2 / (2 * mps)
     return np.column_stack((speed[0] * way, speed[1] * way, np.zeros(count)))
 
 
@@ -181,6 +188,8 @@ def _oddity(scene: Scene, strike: Strike, surface: RoadSurface, track: Track, k:
     if any(_least(track.poses[:until], track.size, t.poses[:until], t.size) <= 0.0 for t in others):
         return None
     met = sum(_least(track.poses, track.size, other.poses, other.size) <= 0.0 for other in others)
+    if strike.thing.firm:
+        met += _least(track.poses[k:], track.size, own.driven[k:], own.size) < -_GLANCED_MOST_M
     beside = float(surface.off(track.poses[k : k + 1, :2])[0][0]) > _OFF_ROAD_M
     return _RANK_MET * met + _RANK_OFF * (beside == strike.thing.record.walks)
 

@@ -16,8 +16,8 @@ from sgcad_core.case.records import ObservedContact, Record, Trajectory
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.actor_plan import Role
 from sgcad_core.planner.aftermath.later_contacts import Ending, expect_later_contacts, strikes_of, struck_before
-from sgcad_core.planner.aftermath.rest_candidates import MISSED
 from sgcad_core.planner.aftermath.rest_fit import Impact
+from sgcad_core.planner.aftermath.second_contact import MISSED
 from sgcad_core.planner.aftermath.struck_objects import Strike
 from sgcad_core.planner.aftermath.told_order import ToldOrder, met_in_order, pair_of
 from sgcad_core.planner.bystanders import place_clear
@@ -25,6 +25,7 @@ from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.meeting_place import Place, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.near_miss import as_near_miss
+from sgcad_core.planner.encounter.off_center import is_passed
 from sgcad_core.planner.encounter.pacing_choices import ROLLS_IN
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.encounter.try_elsewhere import WholeCourse, least_missed
@@ -225,17 +226,15 @@ class _Cast:
 
     def _let_through(self, scene: Scene, first: Contact) -> None:
         """Lets a thing that is struck first give way where its vehicle strikes something else after it."""
-        track = scene.tracks[first.struck]
-        if track.motion.fixed and any(first.striker in (c.striker, c.struck) for c in self.contacts[1:]):
-            track.give_way()
+        track, goes_on = scene.tracks[first.struck], any(first.striker in pair_of(c) for c in self.contacts[1:])
+        if track.motion.fixed and goes_on:
+            track.let_pass(stays=is_passed(self.actors[first.struck], first.striker_area))
 
     def _look(self, scene: Scene, pair: Iterable[tuple[Option, Motion, float]]) -> None:
         """Notes which stated maneuvers and evasions are not visible before the contact."""
-        for option, motion, _ in pair:
+        for option in (one for one, motion, _ in pair if not motion.standing):
             role = option.role
             until = scene.tracks[role.actor.id].driven[: scene.contact + 1]
-            if motion.standing:
-                continue
             if words := unseen_maneuver(role.actor, role.course, until):
                 self.notes.append(words)
                 self.missed += _MANEUVER_MISSED

@@ -25,7 +25,7 @@ from sgcad_core.planner.aftermath.wreck_bodies import Mover, Touch
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import STEP_S, Motion, clock
 from sgcad_core.records.course import NOTHING_TOLD, Courses, CourseTold
-from sgcad_core.records.specs import ActorKind, Surface
+from sgcad_core.records.specs import ActorKind, Area, Surface
 
 AFTER_S = 5.0
 """From the first contact to the end: from 80 mph at 0.75 g all stand by then."""
@@ -33,6 +33,8 @@ BRAKED_MPS2 = 4.5
 """Of a struck vehicle along its wheels: some locked or bent, with the brake applied."""
 ROLLING_MPS2 = 2.2
 """Of a vehicle that has a further contact."""
+TUMBLING_MPS2 = 9.0
+"""Of things that are knocked over: they dig in."""
 THROWN_MPS2 = 5.5
 """Of pedestrians, and of two-wheelers on their side, over the ground."""
 _REACTION_S = 0.5
@@ -64,11 +66,19 @@ class Track:
     """Its mass where it differs from that of its kind, kg."""
     gives_way: bool = False
     """Whether what strikes it goes on past it."""
+    firm: bool = False
+    """Whether what strikes it glances off it and goes on, while it stays."""
     driven: Floats = field(init=False)
     """Its poses without any contact."""
 
     def __post_init__(self) -> None:
         self.driven = self.poses
+
+    def let_pass(self, *, stays: bool) -> None:
+        """Lets what strikes it go on: off a thing that stays, or past one that gives way."""
+        self.firm = stays
+        if not stays:
+            self.give_way()
 
     def give_way(self) -> None:
         """Lets what strikes it go on past it: people are thrown aside, of things a breakaway post or a piece."""
@@ -108,6 +118,8 @@ class Scene:
     restitution: float = RESTITUTION
     again: frozenset[frozenset[str]] = frozenset()
     """Pairs with a stated second contact."""
+    sides: dict[frozenset[str], dict[str, Area]] = field(default_factory=dict)
+    """The sides of the second contacts, by actor."""
     told: frozenset[frozenset[str]] = frozenset()
     """Pairs with a stated contact after the first."""
     _settled: dict[Hashable, _Settled] = field(default_factory=dict, repr=False)
@@ -161,7 +173,7 @@ class Scene:
     def _cause(self) -> Hashable:
         """All that determines the motion to rest."""
         movers = tuple(
-            (t.actor, id(t.driven), t.size, t.mass, t.motion.fixed, t.gives_way) for t in self.tracks.values()
+            (t.actor, id(t.driven), t.size, t.mass, t.motion.fixed, t.gives_way, t.firm) for t in self.tracks.values()
         )
         chosen = self.friction, self.restitution, self.again, self.told, tuple(self.runs.items())
         return movers, tuple(self.hitches), chosen, self.rolling, self.surface, self.count
@@ -179,7 +191,9 @@ class Scene:
         mass = None if track.motion.fixed else track.mass or mass_kg(track.kind, track.size[0])
         start = body((0.0, 0.0, 0.0), track.size, mass)
         runs = self.runs.get(track.actor, ())
-        return Mover(track.actor, start, track.driven, self.drag(track), runs, gives_way=track.gives_way)
+        return Mover(
+            track.actor, start, track.driven, self.drag(track), runs, gives_way=track.gives_way, firm=track.firm
+        )
 
     def drag(self, track: Track) -> Drag:
         """Deceleration of an actor without a chosen run-out."""
@@ -228,6 +242,8 @@ def usual_drag(kind: ActorKind, grip_mps2: float, along_mps2: float = BRAKED_MPS
     """Deceleration after a blow on a surface of some grip: vehicles slow along their wheels, people slide."""
     if actor_kind(kind).tumbles:
         return Drag(min(THROWN_MPS2, grip_mps2), min(THROWN_MPS2, grip_mps2))
+    if actor_kind(kind).thing:
+        return Drag(TUMBLING_MPS2, TUMBLING_MPS2)
     return Drag(min(along_mps2, grip_mps2), grip_mps2)
 
 

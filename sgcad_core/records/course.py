@@ -19,6 +19,8 @@ Attitude = Literal["wheels", "roof", "left", "right"]
 Spin = Literal["clockwise", "counterclockwise"]
 Hand = Literal["left", "right"]
 Steering = Literal["left", "right", "either"]
+RestLane = Literal["own", "left", "right", "middle", "left_turn", "right_turn", "center_turn"]
+"""A lane at rest by its word; own: the one in which the vehicle began."""
 DepartureSide = Compass | Hand | Literal["either"]
 """Where a vehicle leaves the road: a compass word, a hand as seen in its direction of travel; either: not told."""
 
@@ -36,6 +38,15 @@ class RestTold:
     """What it leaned against, in the report's word."""
     distance_m: float | None = None
     """From the place of its first contact."""
+    lane: int | RestLane | None = None
+    """1 = at the right curb; where counted from the left -1 = the leftmost."""
+    lane_way: Compass | None = None
+    """The direction of travel of the lane, or of the lanes, in which it stands."""
+
+    @property
+    def in_lane(self) -> bool:
+        """Whether a lane, or the lanes of a direction, are stated."""
+        return self.lane is not None or self.lane_way is not None
 
     @property
     def empty(self) -> bool:

@@ -1,18 +1,20 @@
 """The paved surface of a road network: distance and direction of points from it.
 
-The surface is the union of all lanes that cars may use and of the ways across the junctions. Metres and radians in the
-network's frame. Knows no actor.
+The surface is the union of all lanes that cars may use, of center turn lanes and of the ways across the junctions.
+Metres and radians in the network's frame. Knows no actor.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import arc_lengths, resample
 from sgcad_core.roads.lane_graph import Floats, LaneGraph, road_of
+from sgcad_core.roads.lane_positions import Position, position
 
 _LONGEST_M = 8.0
 """Longest piece of a center line."""
@@ -28,6 +30,10 @@ class Junction(NamedTuple):
     radius_m: float
 
 
+OfLane = Position | Literal["center", "junction"]
+"""A lane for cars, a center turn lane, or a way across a junction."""
+
+
 class RoadSurface(NamedTuple):
     """Pieces of lanes: (n, 2) their ends, (n,) half their widths; and the junctions."""
 
@@ -35,6 +41,21 @@ class RoadSurface(NamedTuple):
     ends: Floats
     halves: Floats
     junctions: tuple[Junction, ...]
+    lanes: tuple[OfLane, ...] = ()
+    """By piece what it is a part of."""
+
+    @property
+    def ways(self) -> Floats:
+        """(n,) directions of travel on the pieces, counter-clockwise from east."""
+        east, north = (self.ends - self.starts).T
+        found: Floats = np.arctan2(north, east)
+        return found
+
+    def part(self, numbers: Sequence[int]) -> RoadSurface:
+        """The surface of some of its pieces."""
+        chosen = list(numbers)
+        lanes = tuple(self.lanes[n] for n in chosen) if self.lanes else ()
+        return RoadSurface(self.starts[chosen], self.ends[chosen], self.halves[chosen], self.junctions, lanes)
 
     def off(self, points: Floats) -> tuple[Floats, Floats]:
         """(m,) distance of (m, 2) points beyond the edge of the nearest lane (negative: on it), and the (m,) bearing
@@ -42,6 +63,11 @@ class RoadSurface(NamedTuple):
 
         Bearings are counter-clockwise from east, from the lane's center line to the point.
         """
+        beyond, bearing, _ = self.nearest(points)
+        return beyond, bearing
+
+    def nearest(self, points: Floats) -> tuple[Floats, Floats, NDArray[np.int_]]:
+        """As `off`, and the (m,) number of the nearest piece of each point."""
         east, north = (self.ends - self.starts).T
         square = np.maximum(east**2 + north**2, 1e-9)
         dx, dy = (points[:, i, None] - self.starts[None, :, i] for i in (0, 1))
@@ -50,24 +76,27 @@ class RoadSurface(NamedTuple):
         beyond = np.hypot(dx, dy) - self.halves
         nearest = np.argmin(beyond, axis=1)
         rows = np.arange(len(points))
-        return beyond[rows, nearest], np.arctan2(dy[rows, nearest], dx[rows, nearest])
+        return beyond[rows, nearest], np.arctan2(dy[rows, nearest], dx[rows, nearest]), nearest
 
 
 def road_surface(graph: LaneGraph) -> RoadSurface:
     """The surface of a network."""
     pieces = list(_pieces(graph))
-    starts, ends = (np.vstack([p[i] for p in pieces]) for i in (0, 1))
+    starts, ends = np.vstack([p[0] for p in pieces]), np.vstack([p[1] for p in pieces])
     halves = np.concatenate([np.full(len(p[0]), p[2]) for p in pieces])
-    return RoadSurface(starts, ends, halves, tuple(_junctions(graph)))
+    lanes = tuple(lane for begins, _, _, lane in pieces for _ in begins)
+    return RoadSurface(starts, ends, halves, tuple(_junctions(graph)), lanes)
 
 
-def _pieces(graph: LaneGraph) -> Iterator[tuple[Floats, Floats, float]]:
+def _pieces(graph: LaneGraph) -> Iterator[tuple[Floats, Floats, float, OfLane]]:
     for edge in graph.edges.values():
         for lane in edge.laid_lanes:
-            yield (*_cut(lane.shape), lane.width_m / 2)
+            yield (*_cut(lane.shape), lane.width_m / 2, position(graph, lane.id) or "junction")
+        if edge.center_lane is not None:
+            yield (*_cut(edge.center_lane.shape), edge.center_lane.width_m / 2, "center")
     for c in graph.connections:
         widths = [lane.width_m for lane in graph.edges[c.from_edge].lanes if lane.index == c.from_lane]
-        yield (*_cut(c.via_shape), max(*widths, _LEAST_WIDTH_M) / 2 if widths else _LEAST_WIDTH_M / 2)
+        yield (*_cut(c.via_shape), max(*widths, _LEAST_WIDTH_M) / 2 if widths else _LEAST_WIDTH_M / 2, "junction")
 
 
 def _cut(line: Floats) -> tuple[Floats, Floats]:

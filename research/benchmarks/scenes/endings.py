@@ -6,6 +6,7 @@ Reads road.net.xml, trajectories.csv, result.json and report.txt of every case; 
 motion is believed. What is told is what the rules read in the report. Counted of told endings:
 
 - *zone and side*: the last place is in the told zone, on the told side of it (`rest_error`)
+- *lane*: the last place is in the told lane, or in one of the told direction
 - *facing*: within 20 degrees
 - *distance*: between the place of the first contact and the last one, within 30 % or a metre
 - *spin*: the vehicle turns to the told side after its first contact, and by the told angle within a quarter of it or 30
@@ -54,7 +55,7 @@ _RATE = 10
 """Samples over which a deceleration is taken."""
 _WALL_M = 2.5
 """A wider thing stops a vehicle as a wall does."""
-TOLD = ("zone and side", "facing", "distance", "spin")
+TOLD = ("zone and side", "lane", "facing", "distance", "spin")
 FAULTS = ("crawls", "bends", "dead stops")
 HEAD = "| config | cases | vehicles | " + " | ".join((*TOLD, *FAULTS)) + " |"
 
@@ -133,11 +134,14 @@ class Seen(NamedTuple):
 def told_parts(one: Ended, told: CourseTold, crash: Crash) -> Iterator[Seen]:
     """The told parts of a vehicle's ending, each against its motion."""
     rest = told.rest
-    errors = rest_errors(rest, one.pose[-1:], float(one.pose[one.hits[0] - 1, 2]), crash.surface)
+    errors = rest_errors(rest, one.pose[-1:], float(one.pose[one.hits[0] - 1, 2]), crash.surface, one.pose[0])
     if errors.where_m is not None:
         met = all(error[0] <= 1e-9 for error in (errors.where_m, errors.side_rad) if error is not None)
         side = f", {math.degrees(errors.side_rad[0]):.0f} degrees" if errors.side_rad is not None else ""
         yield Seen("zone and side", met, f"{rest.where} {rest.side or ''}: off by {errors.where_m[0]:.1f} m{side}")
+    if errors.lane_m is not None:
+        lane = f"{rest.lane or 'lanes'} {rest.lane_way or ''}: off by {errors.lane_m[0]:.1f} m"
+        yield Seen("lane", bool(errors.lane_m[0] <= 1e-9), lane)
     if errors.facing_rad is not None and not told.rolls:
         yield Seen(
             "facing", bool(errors.facing_rad[0] <= 1e-9), f"off by {math.degrees(errors.facing_rad[0]) + 20:.0f}"

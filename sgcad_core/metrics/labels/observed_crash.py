@@ -133,7 +133,9 @@ class VehicleMotion:
 
     def rest(self, told: RestTold) -> dict[str, bool]:
         """By stated part of the rest whether the last pose is right."""
-        return rest_errors(told, self.path.pose[-1:], float(self.before[-1, 2]), self.crash.surface).right()
+        return rest_errors(
+            told, self.path.pose[-1:], float(self.before[-1, 2]), self.crash.surface, self.path.pose[0]
+        ).right()
 
 
 def ahead_of(graph: LaneGraph, edge: Edge, lane: Lane) -> Floats:

@@ -10,8 +10,8 @@ from dataclasses import replace
 from itertools import islice
 from typing import NamedTuple, Protocol
 
-from sgcad_core.planner.aftermath.rest_candidates import MISSED
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit, leaving_the_road
+from sgcad_core.planner.aftermath.second_contact import MISSED
 from sgcad_core.planner.aftermath.struck_objects import Strike, leave_beside, place_thing
 from sgcad_core.planner.aftermath.told_order import ToldOrder, pair_of
 from sgcad_core.planner.encounter.off_center import NARROW_M, SHARES, USUAL
@@ -87,6 +87,10 @@ def expect_later_contacts(scene: Scene, contacts: Sequence[Contact]) -> None:
     first = {pair_of(contact) for contact in contacts[:1]}
     further = frozenset(pair_of(contact) for contact in contacts[1:])
     scene.again, scene.told = further & first, further - first
+    for contact in contacts[1:]:
+        if pair_of(contact) in scene.again:
+            sides = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
+            scene.sides.setdefault(pair_of(contact), sides)
 
 
 def _off_middle(strike: Strike, course: CourseTold) -> Strike:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import Floats, Size, gaps_where_near
 from sgcad_core.planner.aftermath.ground_friction import RunOut
+from sgcad_core.planner.aftermath.second_contact import MISSED, NOT_AGAIN, WRONG_SIDE, Sides, wrong_sides
 
 Ints = NDArray[np.int_]
 
@@ -44,15 +45,15 @@ _DRIVES_ON_S, _DRIVES_ON_PER_M = (1.0, 1.8), 0.06
 """Time for which an able driver goes on before braking, with freely rolling wheels and in no tighter bend: to the
 shoulder, out of the junction."""
 _BEFORE_IT_ROLLS_PER_M = 0.03
-_EACH_BEND = 3
-"""Number of run-outs per steering that are compared for two vehicles that meet again."""
+_EACH_WAY = 2
+"""Number of run-outs of each sort that are compared for two vehicles that meet again."""
+_TURNS_FREELY = 0.7
+"""Resistance to turning below which a run-out is of another sort."""
 _PARTED_M = 0.06
 _SOON = 40
 """Steps of the run-outs that are compared: 4 s, later they hardly move."""
 _IN_EACH_OTHER_M = 0.25
 """Run-outs on which two boxes would overlap so deep are excluded: they push each other elsewhere."""
-MISSED = 1.5
-"""Cost of a stated second contact that does not happen."""
 UNUSUAL = 0.02
 _MOVES_MPS = 0.7
 """Speed from which the direction of a way counts."""
@@ -102,6 +103,8 @@ class BlowWays:
     restitution: float
     again: bool = False
     """Whether the two touch a second time."""
+    sides: Sides = (None, None)
+    """The sides on which they then do, in the order of the vehicles."""
     vehicles: dict[str, VehicleWays] = field(default_factory=dict)
     tried: set[tuple[int, ...]] = field(default_factory=set)
     known: tuple[int, ...] | None = None
@@ -119,20 +122,25 @@ class BlowWays:
     def _of_two(self, first: Floats, second: Floats) -> tuple[int, ...]:
         """The cheapest pair of run-outs that keep clear of each other once parted, or that meet again, as stated."""
         a, b = self.vehicles.values()
-        most = _EACH_BEND if self.again else 1
-        mine, theirs = (_various(v.runs, costs, most) for v, costs in ((a, first), (b, second)))
+        mine, theirs = (_various(v.runs, costs, again=self.again) for v, costs in ((a, first), (b, second)))
         pairs = [(int(i), int(j)) for i in mine for j in theirs if (int(i), int(j)) not in self.tried]
         if not pairs:
             return ()
         i, j = np.array(pairs).T
         gaps = self._gaps(i, j)
-        if self.again:
-            apart = np.maximum.accumulate(gaps, axis=0) > _PARTED_M
-            missed = ~(apart & (gaps <= 0.0)).any(axis=0)
-        else:
-            missed = gaps.min(axis=0) < -_IN_EACH_OTHER_M
-        best = int(np.argmin(first[i] + second[j] + MISSED * missed))
+        missed = self._missed_again(gaps, i, j) if self.again else MISSED * (gaps.min(axis=0) < -_IN_EACH_OTHER_M)
+        best = int(np.argmin(first[i] + second[j] + missed))
         return pairs[best]
+
+    def _missed_again(self, gaps: Floats, first: Ints, second: Ints) -> Floats:
+        """(n,) costs of pairs of run-outs that do not meet again once parted, or on other sides than told."""
+        a, b = self.vehicles.values()
+        apart = np.maximum.accumulate(gaps, axis=0) > _PARTED_M
+        met = apart & (gaps <= 0.0)
+        at = met.argmax(axis=0)
+        wrong = wrong_sides((a.ways[at, first], a.size), (b.ways[at, second], b.size), self.sides)
+        cost: Floats = np.where(met.any(axis=0), WRONG_SIDE * wrong, NOT_AGAIN)
+        return cost
 
     def _in_each_other(self, known: tuple[int, ...]) -> bool:
         """Whether two run-outs lead through each other."""
@@ -163,12 +171,14 @@ class BlowWays:
         self.known = None
 
 
-def _various(runs: Sequence[RunOut], costs: Floats, most: int) -> list[int]:
-    """The cheapest run-outs of each steering."""
-    by_bend: dict[float, list[int]] = {}
-    for i in np.argsort(costs, kind="stable"):
-        by_bend.setdefault(runs[int(i)].bend_per_m, []).append(int(i))
-    return [i for same in by_bend.values() for i in same[:most]]
+def _various(runs: Sequence[RunOut], costs: Floats, *, again: bool) -> list[int]:
+    """The cheapest run-outs of each steering; `again`: of each sort, by steering, locked wheels and turning."""
+    sorts: dict[tuple[float, ...], list[int]] = {}
+    for i in np.argsort(costs, kind="stable").tolist():
+        run = runs[i]
+        sort = (run.bend_per_m, run.slides, np.sign(run.yaws_radps2), run.turning < _TURNS_FREELY) if again else ()
+        sorts.setdefault((*sort, run.bend_per_m), []).append(i)
+    return [i for same in sorts.values() for i in same[: _EACH_WAY if again else 1]]
 
 
 def all_runs(from_s: float, grip_mps2: float, mps: float, *, on_wheels: bool = True) -> list[RunOut]:

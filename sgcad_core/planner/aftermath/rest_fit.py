@@ -20,7 +20,6 @@ from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.rest_error import FACING_RAD, SIDE_RAD, SPINS_RAD, RestErrors, near_m, rest_errors
 from sgcad_core.planner.aftermath.ground_friction import Released, run_out_paths
 from sgcad_core.planner.aftermath.rest_candidates import (
-    MISSED,
     BlowWays,
     Choice,
     VehicleWays,
@@ -29,6 +28,7 @@ from sgcad_core.planner.aftermath.rest_candidates import (
     oddities,
 )
 from sgcad_core.planner.aftermath.rollover import rolls_over
+from sgcad_core.planner.aftermath.second_contact import missed_again
 from sgcad_core.planner.aftermath.told_order import ToldOrder
 from sgcad_core.planner.later_courses import RunOuts, run_outs, with_run
 from sgcad_core.planner.motion import STEP_S
@@ -49,6 +49,8 @@ _LAST_RUNS = 2
 """Run-outs behind the last touch of a vehicle that are simulated."""
 _WHOLE = 3
 """Whole simulations at most, beyond one for each friction and restitution."""
+_WHOLE_AGAIN = 10
+"""The same where the two meet again: where they then push each other depends on more."""
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
 """Margin inside the allowed error that counts as best."""
 _FACING_SCALE_RAD = math.radians(45.0)
@@ -86,7 +88,7 @@ class RestFit:
             return
         best, least = self._choice(), self.cost()
         ways: list[BlowWays] = []
-        for number in range(len(self.impacts) + _WHOLE):
+        for number in range(len(self.impacts) + (_WHOLE_AGAIN if self.scene.again else _WHOLE)):
             if least <= self._well:
                 break
             if number < len(self.impacts):
@@ -166,8 +168,10 @@ class RestFit:
         until = scene.contact + round(_BLOW_S / STEP_S)
         wreck = scene.wreck()
         wreck.settle(until)
-        found = BlowWays(friction, restitution, bool(scene.again))
         free = [name for name in self.wanted if wreck.named[name].free and not wreck.named[name].fixed]
+        told = scene.sides.get(frozenset(free), {})
+        sides = (told.get(free[0]), told.get(free[-1])) if free else (None, None)
+        found = BlowWays(friction, restitution, bool(scene.again), sides)
         if not free:
             return found
         at_s, end_s = until * STEP_S, (scene.count - 4) * STEP_S
@@ -189,7 +193,7 @@ class RestFit:
     def cost(self) -> float:
         """The cost of the settled scene: its distance from what is stated."""
         ends = {name: self.scene.tracks[name].poses[-1:] for name in self.wanted}
-        missed = sum(MISSED for pair in self.scene.again if not self._meet_again(pair))
+        missed = sum(missed_again(self.scene, pair) for pair in self.scene.again if pair <= self.scene.tracks.keys())
         missed += 0.0 if self.order is None or self.order.kept else _PARTED
         return missed + sum(float(self._costs(name, course, ends[name])[0]) for name, course in self.wanted.items())
 
@@ -199,10 +203,13 @@ class RestFit:
 
     def _costs(self, name: str, course: CourseTold, ends: Floats) -> Floats:
         """(n,) costs of (n, 3) last poses: 1 and more for every missed part."""
-        errors = rest_errors(course.rest, ends, self._came_rad(name), self.surface)
+        errors = self._errors(name, course.rest, ends)
         total = np.zeros(len(ends))
         for error, well, scale in zip(
-            errors, (_WELL_RAD, _WELL_M, _WELL_RAD), (_FACING_SCALE_RAD, 5.0, SIDE_RAD), strict=True
+            errors,
+            (_WELL_RAD, _WELL_M, _WELL_RAD, _WELL_M),
+            (_FACING_SCALE_RAD, 5.0, SIDE_RAD, 5.0),
+            strict=True,
         ):
             if error is not None:
                 total += _TOLD * (error > 0) + np.maximum(error + well, 0.0) / scale
@@ -225,18 +232,26 @@ class RestFit:
         told: Floats = off * (1.0 if course.spin_deg and course.rest.facing_deg is None else way * turned < wanted)
         return told + _TOLD * (way * turned < SPINS_RAD)
 
+    def _errors(self, name: str, rest: RestTold, ends: Floats) -> RestErrors:
+        """Errors of (n, 3) last poses of a vehicle."""
+        return rest_errors(rest, ends, self._came_rad(name), self.surface, self.scene.tracks[name].driven[0])
+
     def _came_rad(self, name: str) -> float:
         """An actor's heading at the first contact, as its motion had it."""
         return float(self.scene.tracks[name].driven[self.scene.contact, 2])
 
     def missed(self) -> list[str]:
         """Notes on the stated rests that are not reached, with the errors."""
-        apart = [" and ".join(sorted(pair)) for pair in self.scene.again if not self._meet_again(pair)]
-        notes = [f"{pair} do not touch a second time, as is told" for pair in apart]
+        notes = []
+        for pair in self.scene.again:
+            if not self._meet_again(pair):
+                notes.append(f"{' and '.join(sorted(pair))} do not touch a second time, as is told")
+            elif pair <= self.scene.tracks.keys() and missed_again(self.scene, pair):
+                notes.append(f"{' and '.join(sorted(pair))} touch a second time on other sides than told")
         return notes + [note for name, course in self.wanted.items() for note in self._missed(name, course.rest)]
 
     def _missed(self, name: str, rest: RestTold) -> Iterator[str]:
-        errors = rest_errors(rest, self.scene.tracks[name].poses[-1:], self._came_rad(name), self.surface)
+        errors = self._errors(name, rest, self.scene.tracks[name].poses[-1:])
         yield from (f"{name} {words}" for words in _in_words(rest, errors))
         if rest.distance_m is not None:
             way = float(self._way_m(name, self.scene.tracks[name].poses[-1:])[0])
@@ -245,7 +260,7 @@ class RestFit:
 
 
 def _in_words(rest: RestTold, errors: RestErrors) -> Iterator[str]:
-    facing, where, side = errors
+    facing, where, side, lane = errors
     if facing is not None and facing[0] > 0:
         off = math.degrees(float(facing[0]) + FACING_RAD)
         yield f"comes to rest facing {off:.0f} degrees off what is told"
@@ -253,3 +268,10 @@ def _in_words(rest: RestTold, errors: RestErrors) -> Iterator[str]:
         yield f"comes to rest {float(where[0]):.1f} m from the told place ({(rest.where or '').replace('_', ' ')})"
     if side is not None and side[0] > 0:
         yield f"comes to rest on another side than told ({rest.side})"
+    if lane is not None and lane[0] > 0:
+        yield f"comes to rest {float(lane[0]):.1f} m from the told {_lane_in_words(rest)}"
+
+
+def _lane_in_words(rest: RestTold) -> str:
+    named = f"lane {rest.lane}" if isinstance(rest.lane, int) else f"{rest.lane or ''} lane".replace("_", " ")
+    return " ".join(filter(None, [named.strip(), f"({rest.lane_way})" if rest.lane_way else ""]))

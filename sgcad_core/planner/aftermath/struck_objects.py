@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sgcad_core.geometry.plane import SIDES, Floats, Size, gaps_where_near
+from sgcad_core.planner.actor_plan import is_beside
 from sgcad_core.planner.aftermath.told_order import ToldOrder, touched
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import STEP_S, Motion, stand
@@ -29,6 +30,8 @@ _LEAST_MPS = 2.6
 """A slower impact is hardly one, and files whose vertices lie 0.11 m apart cannot show it."""
 _DEPTH_M = 0.05
 """Overlap of the undisturbed box with the object at the sample of the impact."""
+GLANCE_M = 0.15
+"""By which a vehicle overlaps a firm thing beside its way, off which it glances."""
 _ALL_TOLD = 1.0
 """A rest with a lower cost misses no stated part."""
 _PAST_M = (6.0, 10.0, 16.0, 25.0, 40.0, 60.0)
@@ -58,6 +61,11 @@ class Strike:
     vehicle, to the left where it is positive; objects struck in a row stand on both sides."""
     thing_side: Area = "front"
     """The side of the object that touches."""
+
+    @property
+    def glances(self) -> bool:
+        """Whether the vehicle goes on past a thing that stays."""
+        return self.goes_on and self.thing.firm and (self.side is None or not is_beside(self.side))
 
 
 def leave_beside(scene: Scene, strike: Strike) -> None:
@@ -126,7 +134,9 @@ def standing_track(scene: Scene, thing: Actor, pose: Floats, *, fixed: bool = Fa
 def _stand(scene: Scene, strike: Strike, pose: Floats) -> Track:
     track = standing_track(scene, strike.thing, pose, fixed=not strike.goes_on)
     scene.tracks[strike.thing.id] = track
-    if strike.goes_on:
+    if strike.glances:
+        track.motion, track.firm = replace(track.motion, fixed=True), True
+    elif strike.goes_on:
         track.give_way()
     return track
 
@@ -172,12 +182,18 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
         outward = (by[0] * math.cos(out) + by[1] * math.sin(out)) / STEP_S
         if outward < _OUTWARD_MPS:
             continue
-        reach = track.size[number % 2] / 2 + size[0] / 2 - min(_DEPTH_M, outward * STEP_S)
+        if strike.glances and number % 2:
+            continue
+        depth, width = (max(size), min(size)) if strike.glances else size
+        reach = track.size[number % 2] / 2 + depth / 2 - min(_DEPTH_M, outward * STEP_S)
         leads = outward > 0.7 * math.hypot(by[0], by[1]) / STEP_S
         rank = 0 if side == strike.side or (strike.side is None and leads) else 1 if leads else 2
         left = strike.asides[0] * track.size[1 - number % 2]
+        if strike.glances:
+            left = math.copysign((track.size[1] + width) / 2 - GLANCE_M, left)
+        turned = out + (math.pi / 2 if depth != size[0] else 0.0)
         yield rank, np.array([
-            x + reach * math.cos(out) - left * math.sin(out), y + reach * math.sin(out) + left * math.cos(out), out,
+            x + reach * math.cos(out) - left * math.sin(out), y + reach * math.sin(out) + left * math.cos(out), turned,
         ])  # fmt: skip
 
 

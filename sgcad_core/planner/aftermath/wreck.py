@@ -24,6 +24,7 @@ from sgcad_core.planner.aftermath.wreck_bodies import (
     center_of,
     fastest_closing,
     first_sample,
+    glances,
     key_of,
     last_move,
     may_meet,
@@ -46,7 +47,7 @@ _PARTED_M = 0.05
 """Gap beyond which two bodies that meet again touch anew."""
 _SHOWN_M = 0.008
 """Overlap that is left for the sample behind a touch."""
-_SHORTEST_S, _LONGEST_S = 0.0005, 0.01
+_SHORTEST_S, _LONGEST_S, _LEAST_LEFT_S, _SHORTEST_LEFT_S = 0.0005, 0.01, 0.1, 1e-3
 _NEAR_M = 0.15
 """Bodies further apart move in steps of the clock, as long as these cannot bring them together."""
 _PARTING_MPS = 0.3
@@ -63,7 +64,6 @@ _DEEPEST_M = 0.03
 _ROUNDS, _ROUNDS_OF_MANY = 6, 60
 """Rounds of impulses over all touching pairs in one step: a body between two that are much heavier gives way to both
 only after many; after six a man between two trucks overlapped one of them by 0.17 m."""
-_LEAST_LEFT_S, _SHORTEST_LEFT_S = 0.1, 1e-3
 _FASTER_MPS = 4.0
 """Gain in speed within a sample for which the room of `may_meet` (0.5 m) suffices."""
 
@@ -236,7 +236,8 @@ class Wreck:
 
     def _touches(self, a: Mover, b: Mover, seen: Separation, sample: int) -> bool:
         """Whether a pair is in touch; both are free from the first time on."""
-        key = key_of(a, b)
+        if (key := key_of(a, b)) in self.gone:
+            return False
         if key in self.touches and seen.gap_m > _PARTED_M and frozenset(key) in self.again:
             self.past.append((self.touches.pop(key), key))
         if key in self.touches:
@@ -249,7 +250,8 @@ class Wreck:
         self.touches[key] = self.now
         for m in (a, b):
             self._release(m, sample)
-        return True
+        self.gone |= {key} if glances(a, b) else set()
+        return key not in self.gone
 
     def _release(self, m: Mover, sample: int) -> None:
         """Frees a body and what is coupled to it."""

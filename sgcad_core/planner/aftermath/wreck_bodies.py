@@ -23,6 +23,8 @@ Pair = tuple["Mover", "Mover"]
 _ASIDE_S, _PASSES_M = 0.25, 0.15
 """Time in which a thing that gives way is out of the way, and the gap at which it is then passed."""
 _LEAST_ASIDE_MPS, _MOST_ASIDE_MPS = 1.0, 8.0
+_LOST, _CLEARS_M = 0.15, 0.1
+"""Share of its speed that a body loses when it glances off a firm thing, and the gap at which it then passes."""
 _NEAR_M = 0.03
 """Corners this close to the other box take part in a touch."""
 
@@ -42,6 +44,8 @@ class Mover:
     """The last sample before its first touch takes effect."""
     gives_way: bool = False
     """Whether what strikes it goes on past it."""
+    firm: bool = False
+    """Whether what strikes it glances off it and goes on, while it stays."""
 
     def run_at(self, now_s: float) -> RunOut | None:
         """The run-out that counts at a time."""
@@ -86,6 +90,35 @@ def throw_aside(thing: Body, by: Body) -> None:
     clear = by.size[1] / 2 + across + _PASSES_M - abs(left)
     aside = math.copysign(min(max(clear / _ASIDE_S, _LEAST_ASIDE_MPS), _MOST_ASIDE_MPS), left)
     thing.vx, thing.vy, thing.spin = by.vx - aside * s, by.vy + aside * c, 0.0
+
+
+def glances(a: Mover, b: Mover) -> bool:
+    """Leads a body that comes to touch a firm thing past it; whether one of the two is such a thing."""
+    if a.firm != b.firm:
+        thing, by = (a, b) if a.firm else (b, a)
+        _glance(thing.body, by.body, by.drag.across)
+    return a.firm != b.firm
+
+
+def _glance(thing: Body, by: Body, across_mps2: float) -> None:
+    """Leads a body past a firm thing before one of its corners: it loses some of its speed, its corner is held back,
+    and it is pushed as far to the other side as the two overlap, against the friction of the ground."""
+    speed = by.speed
+    c, s = (by.vx / speed, by.vy / speed) if speed > 0.0 else (math.cos(by.heading), math.sin(by.heading))
+    dx, dy = thing.x - by.x, thing.y - by.y
+    left = dy * c - dx * s
+    overlap = _half_across(by, c, s) + _half_across(thing, c, s) - abs(left)
+    aside = -math.copysign(math.sqrt(2 * across_mps2 * max(overlap + _CLEARS_M, 0.0)), left)
+    lost = _LOST * speed
+    by.vx -= lost * c + aside * s
+    by.vy -= lost * s - aside * c
+    by.spin += left * lost * by.inverse_inertia / by.inverse_mass
+
+
+def _half_across(one: Body, c: float, s: float) -> float:
+    """Half of the width of a body across a direction."""
+    off = math.atan2(s, c) - one.heading
+    return (one.size[0] * abs(math.sin(off)) + one.size[1] * abs(math.cos(off))) / 2
 
 
 def separations(near: Sequence[Pair]) -> list[Separation]:

@@ -14,9 +14,11 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats, Size, sides_at
 from sgcad_core.planner.actor_plan import Role
+from sgcad_core.planner.aftermath.struck_objects import GLANCE_M
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.lines.departures import side_of
 from sgcad_core.planner.motion import Motion
+from sgcad_core.records.specs import Actor, Area, size_m
 
 NARROW_M = 1.2
 """A wider thing has no side of its own."""
@@ -42,17 +44,34 @@ def _beside_middle(found: Encounter) -> Iterator[Encounter]:
         (here, at_s), (driven, by_s) = motions if first else motions[::-1]
         if not here.standing:
             continue
-        for share in _shares(by.role):
+        for share in _shares(by.role, thing.role):
             moved = _moved(here, at_s, (driven.poses([by_s])[0], by.role.size), share)
             both = (moved, meeting.second) if first else (meeting.first, moved)
             yield found._replace(meeting=meeting._replace(first=both[0], second=both[1]))
 
 
-def _shares(role: Role) -> tuple[float, ...]:
-    """Signed shares of half a side: positive turns the vehicle counter-clockwise."""
+def _shares(role: Role, thing: Role) -> tuple[float, ...]:
+    """Signed shares of half a side: positive turns the vehicle counter-clockwise.
+
+    A firm thing off which the vehicle glances stands at the corner.
+    """
+    if _glances(role, thing):
+        share = 1.0 + (thing.size[1] - 2 * GLANCE_M) / role.size[1]
+        to_left = role.spins > 0 if role.spins else side_of(role.actor.maneuver, role.told.departs) == "left"
+        return (share if to_left else -share,)
     if role.spins:
         return tuple(math.copysign(share, role.spins) for share in SHARES)
     return (USUAL if side_of(role.actor.maneuver, role.told.departs) == "left" else -USUAL,)
+
+
+def _glances(role: Role, thing: Role) -> bool:
+    """Whether a vehicle goes on past a firm, narrow thing that its front or back strikes."""
+    return role.goes_on and is_passed(thing.actor, role.side)
+
+
+def is_passed(thing: Actor, side: Area | None) -> bool:
+    """Whether a vehicle that strikes a thing with a side and goes on glances off it: one that is firm and narrow."""
+    return thing.firm and side in ("front", "back") and max(size_m(thing)) <= NARROW_M
 
 
 def _moved(thing: Motion, at_s: float, striking: tuple[Floats, Size], share: float) -> Motion:

@@ -37,12 +37,14 @@ _TOLD_PART = 1.0
 """Least cost of a missed part of the stated course."""
 _SPEEDS = ((1.0, 1.0), (1.3, 0.75), (0.75, 1.3), (1.2, 1.2), (0.8, 0.8))
 """Factors on speeds that are not stated. Two equally fast vehicles would come to rest where they met, head on."""
+_SPEEDS_AGAIN = ((0.6, 1.3), (1.3, 0.6), (0.45, 1.1), (1.1, 0.45))
+"""Further ones where the two touch a second time: one then comes to rest where the other still goes on."""
 _PLACES = 5
 """Places along the stated sides, at each of the speeds."""
-_MOST, _MOST_AGAIN = 5, 10
+_MOST, _MOST_AGAIN = 5, 14
 """Encounters tried: each costs about as much as the first. More where the two touch a second time, since a tail hits
 the other only for some places of the impact."""
-_RANKED = 15
+_RANKED, _RANKED_AGAIN = 15, 30
 """Encounters of which those are tried first that turn the vehicles as told."""
 _WORSE = 1.5
 """By which another place may be worse: less than a maneuver or a departure that does not show there."""
@@ -69,11 +71,13 @@ def least_missed(found: Encounter | None, unfold: Unfold) -> WholeCourse:
 def _like(found: Encounter, again: bool) -> Iterator[Encounter]:
     """Other places along the stated sides, at the given speeds and at others in turn, those first that turn the
     vehicles as told; for a second contact (`again`) at the given speeds first."""
-    at_speeds = [_along(found, speeds) for speeds in _SPEEDS]
+    at_speeds = [_along(found, speeds) for speeds in (*_SPEEDS, *(_SPEEDS_AGAIN if again else ()))]
     if again:
         yield from at_speeds.pop(0)
     others = (other for row in zip_longest(*at_speeds) for other in row if other)
-    yield from sorted(islice(others, _RANKED), key=misturned) if turns_told(found) else others
+    yield from (
+        sorted(islice(others, _RANKED_AGAIN if again else _RANKED), key=misturned) if turns_told(found) else others
+    )
 
 
 def _along(found: Encounter, factors: tuple[float, float]) -> Iterator[Encounter]:

@@ -24,6 +24,12 @@ _SIZE_M: dict[str, tuple[float, float]] = {
     "snowbank": (1.5, 4.0), "dumpster": (1.8, 2.0), "bridge": (0.8, 5.0), "abutment": (1.0, 3.0),
 }  # fmt: skip
 """Depth and width of things as a car meets them, metres; others are posts."""
+_FIRM = frozenset((
+    "tree", "trunk", "stump", "pole", "hydrant", "wall", "rock", "stone", "boulder", "border", "guardrail", "rail",
+    "railing", "barrier", "embankment", "bridge", "abutment", "building", "house", "column", "pillar", "garage",
+    "culvert",
+))  # fmt: skip
+"""Things that stay where they stand when a vehicle glances off them."""
 _USUAL_M = (0.4, 0.4)
 _LONG_M = 1.5
 """Width from which a thing stands along the road."""
@@ -43,12 +49,19 @@ def with_roadside(
         driver = next((a for a in actors if a.id == vehicle), None)
         if driver is None or len(joined) >= most[0] or len(told.further) + len(contacts) >= most[1]:
             continue
-        joined.append(_standing(other, driver, endwise=_is_met_endwise(impact, contacts)))
+        joined.append(_held(_standing(other, driver, endwise=_is_met_endwise(impact, contacts)), other.word))
         told.add(impact.after, Contact(
             striker=vehicle, struck=other.id, striker_area=impact.actor_area or _leading(driver),
             struck_area="front" if actor_kind(other.kind).thing else "left",
         ))  # fmt: skip
-    return tuple(joined), tuple(told.merged(contacts))
+    words = {other.id: other.word for other in facts.others}
+    return tuple(_held(actor, words.get(actor.id, "")) for actor in joined), tuple(told.merged(contacts))
+
+
+def _held(actor: Actor, word: str) -> Actor:
+    """The actor, firm where it is a thing that does not give way."""
+    firm = actor.record.thing and word.lower().rpartition(" ")[2].rstrip("s") in _FIRM
+    return actor.model_copy(update={"firm": True}) if firm else actor
 
 
 def _leading(driver: Actor) -> Area:

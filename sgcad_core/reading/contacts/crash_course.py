@@ -12,16 +12,17 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from sgcad_core.reading.actors.vehicles import Roster
+from sgcad_core.reading.contacts.rest_words import HANDS, last_place, leaves_road, rest_lane, side_named, spin_told
 from sgcad_core.reading.contacts.road_departure import DepartureReader
 from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.language import Rule, of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
+from sgcad_core.reading.motion.motion_reader import counts_from_median
 from sgcad_core.reading.motion.motion_record import ManeuverCue, Source
-from sgcad_core.reading.text.compass import COMPASS, WORDS, turned
+from sgcad_core.reading.text.compass import COMPASS, WORDS
 from sgcad_core.reading.text.normalise import number
 from sgcad_core.reading.text.sentence_roles import HIT, Role
-from sgcad_core.records.course import CourseTold, Hand, ImpactTold, Spin, Steering
-from sgcad_core.records.specs import Compass
+from sgcad_core.records.course import CourseTold, Hand, ImpactTold, Steering
 from sgcad_core.units import METERS
 
 UNREAD: frozenset[Role] = frozenset({"codes", "factors", "towing", "injury", "restraint", "police", "health"})
@@ -30,13 +31,16 @@ _FAR_M = (0.5, 300.0)
 """Distances from a contact to a rest that are believed."""
 _MOST_QUARTERS = 24
 """Quarter turns; more is a misreading."""
-_HANDS: dict[str, Hand] = {"left": "left", "right": "right"}
 
 
 @dataclass
 class _CourseReader:
-    """What was read of one vehicle so far, and where each thing was read first."""
+    """What was read of one vehicle so far, and where each thing was read first.
 
+    `from_median`: "the number 1 lane" is the leftmost one.
+    """
+
+    from_median: bool = False
     course: CourseTold = field(default_factory=CourseTold)
     sources: dict[str, Source] = field(default_factory=dict)
     leaving: DepartureReader = field(default_factory=DepartureReader)
@@ -80,7 +84,8 @@ def courses_told(
     `event`: what stands for the impact where nothing is touched."""
     impact = min((t.number for t in statements if t.role == "impact"), default=10_000)
     impact = event.source.number if event else impact
-    heard = {v: _CourseReader() for v in roster.ids}
+    from_median = counts_from_median([t.text for t in statements], roster)
+    heard = {v: _CourseReader(from_median) for v in roster.ids}
     for vehicle, cue in (coded or {}).items():
         heard[vehicle].add("lost_control", True, cue.source)
     for segment in sorted(segments, key=lambda s: s.role in _RETOLD):
@@ -115,7 +120,8 @@ def _split(segment: Segment, impact: int) -> tuple[str, str]:
         return "", text
     rest = rule("course_rest.rest").search(text)
     if later:
-        return text[: later.start()], text[later.start() :]
+        at = min(later.start(), rest.start() if rest else later.start())
+        return text[:at], text[at:]
     hit = next((m for m in HIT.finditer(text) if not rule("motion_reader.no_hit").search(text[: m.start()])), None)
     if segment.number == impact or (segment.role == "impact" and segment.number < impact):
         return (text[: hit.start()], text[hit.start() :]) if hit else (text, "")
@@ -146,7 +152,7 @@ def _read_evasion(one: _CourseReader, segment: Segment, text: str) -> None:
     for found in _done(text, of_role("braking")):
         one.add("brakes", True, Source(segment.number, found[1][0], found[0].id))
     for found in _done(text, of_role("steering")):
-        to: Steering = _HANDS.get(found[1].groupdict().get("hand") or "", "either")
+        to: Steering = HANDS.get(found[1].groupdict().get("hand") or "", "either")
         one.add("steers", to, Source(segment.number, found[1][0], found[0].id))
 
 
@@ -170,16 +176,13 @@ def _done(text: str, wordings: Sequence[Rule]) -> list[tuple[Rule, re.Match[str]
 
 # ------------------------------------------------------------------ behind it
 def _read_spin(one: _CourseReader, segment: Segment, text: str) -> None:
-    m = rule("course_rest.turned").search(text)
-    if not m:
+    found = spin_told(text)
+    if found is None:
         return
-    said = (m["way"] or m["round"] or m["to"]).replace(" ", "").replace("-", "")
-    way: Spin = "clockwise" if said in ("clockwise", "right") else "counterclockwise"
-    source = Source(segment.number, m[0], "course_rest.turned")
-    degrees = m["degrees"] or m["deg"]
-    if degrees and "spin" not in one.sources:
-        one.add("spin_deg", float(degrees), source)
-    one.add("spin", way, source)
+    source = Source(segment.number, found.words, found.rule)
+    if found.degrees and "spin" not in one.sources:
+        one.add("spin_deg", found.degrees, source)
+    one.add("spin", found.way, source)
 
 
 def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
@@ -202,6 +205,7 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
         _read_distance(one, segment, text)
     if not known and segment.role not in _RETOLD:
         _read_place(one, segment, text, clause)
+        _read_lane(one, segment, clause)
 
 
 def _read_roll(one: _CourseReader, segment: Segment, text: str) -> None:
@@ -248,11 +252,11 @@ def _read_place(one: _CourseReader, segment: Segment, text: str, clause: str | N
     """The clause of the rest says where; else the last place on the way there."""
     on_the_way = text[: len(text) - len(clause)] if clause else text
     for part in (on_the_way, clause or ""):
-        found = _last_place(part)
-        side = _side(part)
+        found = last_place(part)
+        side = side_named(part)
         if found is None and side is not None and part is clause and one.course.rest.where is not None:
             one.add_rest("side", side, Source(segment.number, part, "course_rest.side_named"), anew=True)
-        if found is None or (part is on_the_way and not _leaves(part)):
+        if found is None or (part is on_the_way and not leaves_road(part)):
             continue
         wording, m = found
         source = Source(segment.number, m[0], wording.id)
@@ -261,27 +265,9 @@ def _read_place(one: _CourseReader, segment: Segment, text: str, clause: str | N
             one.add_rest("side", side, source, anew=True)
 
 
-def _leaves(text: str) -> bool:
-    """Whether a text tells a way off the road or back onto it, not just where something happened."""
-    places = (m for wording in of_role("place") for m in wording.finditer(text))
-    return any(rule("course_rest.left_road").search(m[0]) for m in places)
-
-
-def _last_place(text: str) -> tuple[Rule, re.Match[str]] | None:
-    """The place that is named last; of wordings that read the same words the one of least weight."""
-    best: tuple[Rule, re.Match[str]] | None = None
-    for wording in of_role("place"):
-        for m in wording.finditer(text):
-            if best is None or m.start() >= best[1].end():
-                best = (wording, m)
-    return best
-
-
-def _side(text: str) -> Compass | Hand | None:
-    found = None
-    for m in rule("course_rest.side_named").finditer(text):
-        word = (m["side"] or m["to"] or m["other"] or m["sent"]).lower()
-        found = _HANDS.get(word) or WORDS.get(word)
-        if m["bound"] and word in WORDS:  # a northbound shoulder lies east of its road
-            found = turned(WORDS[word], 90)
-    return found
+def _read_lane(one: _CourseReader, segment: Segment, clause: str | None) -> None:
+    """The lane of a rest on the road."""
+    found = rest_lane(clause, from_median=one.from_median) if clause and one.course.rest.where == "road" else None
+    for name, value in (("lane", found.lane), ("lane_way", found.way)) if found else ():
+        if value is not None and found is not None:
+            one.add_rest(name, value, Source(segment.number, found.words, "course_rest.lane"))

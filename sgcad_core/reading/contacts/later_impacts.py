@@ -167,6 +167,7 @@ def _undone(text: str, m: re.Match[str]) -> bool:
 
 def _hit(segment: Segment, m: re.Match[str], thing: str, vehicle: str) -> ImpactRead:
     own = rule("contact_words.with_its").search(segment.text[m.end() : m.end() + 60])
+    own = own or rule("course_impacts.damaging").match(segment.text, m.end())
     area = end_of(area_of(own["area"])) if own else None
     impact = ImpactTold(vehicle, _word(thing), area)
     return ImpactRead(impact, Source(segment.number, m[0], "course_impacts.object"))
@@ -205,10 +206,17 @@ def _again(
         other_sides = sides != (first.actor_area, first.other_area) and None not in sides
         further = b is not first and {b.actor, b.other} == pair and b.role != "interview"
         near = 0 <= b.number - first.number <= 2 and b.number not in slapped
-        if further and other_sides and near and rule("course_impacts.again").search(by_number[b.number].text):
+        text = by_number[b.number].text
+        told = (other_sides and rule("course_impacts.again").search(text)) or _once_more(text, b, first)
+        if further and near and told:
             impact = ImpactTold(b.actor, b.other, end_of(b.actor_area), end_of(b.other_area))
             yield ImpactRead(impact, b.source)
             return
+
+
+def _once_more(text: str, mention: ContactMention, first: ContactMention) -> bool:
+    """Whether a mention says that it is a further contact of the same two, on whatever sides."""
+    return mention.number > first.number and rule("course_impacts.once_more").search(text) is not None
 
 
 def _slap(statement: Statement, first: ContactMention) -> ImpactRead:

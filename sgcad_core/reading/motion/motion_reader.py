@@ -40,7 +40,7 @@ def read_motions(
     impact = min((t.number for t in statements if t.role == "impact"), default=len(statements))
     impact = struck_at if roster.counted and struck_at is not None else impact
     texts = {t.number: t.text for t in statements}
-    from_median = _counts_from_median(texts.values(), roster)
+    from_median = counts_from_median(texts.values(), roster)
     contact_sentence = next((t for t in statements if t.number == impact), None) if roster.counted else None
     for segment in segments:
         if segment.role in _UNREAD or (contact_sentence and _behind(contact_sentence, segment)):
@@ -70,7 +70,7 @@ def read_motions(
     return found
 
 
-def _counts_from_median(texts: Iterable[str], roster: Roster) -> bool:
+def counts_from_median(texts: Iterable[str], roster: Roster) -> bool:
     """Whether "the number 1 lane" is the leftmost one, as police in the U.S. count.
 
     Reports of NHTSA's investigators count from the right curb in these words too. They number vehicles, never name a

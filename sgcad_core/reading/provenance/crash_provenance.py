@@ -240,7 +240,7 @@ def _conditions(builder: FactBuilder, read: StageResults) -> Iterator[Fact]:
             yield builder.inferred(f"conditions.{name}", value, "surface follows weather", read.sky.get("weather"))
 
 
-_REST = ("facing_deg", "where", "side", "attitude", "against", "distance_m")
+_REST = ("facing_deg", "where", "side", "attitude", "against", "distance_m", "lane", "lane_way")
 _PLAIN = ("lost_control", "departs", "spin", "spin_deg", "rolls", "roll_quarters", "rolls_to")
 
 

@@ -103,7 +103,7 @@ def test_a_table_of_a_runs_folder(tmp_path: Path) -> None:
     ]
     (case / "result.json").write_text(json.dumps({"status": "generated", "actors": actors}))
     text = endings.table(tmp_path, [], cases=True)
-    assert "| template | 1 | 1 | 1 of 1 | 0 of 1 | 0 of 0 | 0 of 0 | 0 | 0 | 1 |" in text
+    assert "| template | 1 | 1 | 1 of 1 | 1 of 1 | 0 of 1 | 0 of 0 | 0 of 0 | 0 | 0 | 1 |" in text
     assert "facing: a V1: off by 90" in text
     assert "dead stops: a V1: O1" in text
 

@@ -308,3 +308,20 @@ def test_a_gentle_touch_that_is_told_holds_long_enough_to_be_seen_in_a_file() ->
     assert (told < 0).sum() >= 4  # 0.2 s
     assert (gaps(frozenset()) < 0).sum() < (told < 0).sum()
     assert told.min() > -0.05
+
+
+# ------------------------------------------------------------------ firm things
+@pytest.mark.parametrize("hand", [-1.0, 1.0])
+def test_a_car_glances_off_a_firm_thing_that_stays(hand: float) -> None:
+    size, k = (0.5, 0.5), np.arange(COUNT)
+    driven = np.column_stack((0.05 * 12.0 * k, np.zeros((COUNT, 2))))
+    tree = np.repeat([[20.0, hand * (CAR[1] / 2 + size[1] / 2 - 0.15), 0.0]], COUNT, axis=0)
+    car = Mover("car", body((0.0, 0.0, 0.0), CAR, mass_kg("car", CAR[0])), driven, DRAG)
+    thing = Mover("tree", body((0.0, 0.0, 0.0), size, None), tree, DRAG, firm=True)
+    poses, touches = Wreck((car, thing), COUNT).settle()
+    gaps = box_gaps(poses["car"], CAR, poses["tree"], size)
+    assert [{touch.first, touch.second} for touch in touches] == [{"car", "tree"}]
+    assert (poses["tree"] == tree).all()
+    assert poses["car"][-1, 0] > 25.0
+    assert -0.2 < gaps.min() < 0.0 < gaps[-1]
+    assert np.sign(poses["car"][-1, 1]) == -hand

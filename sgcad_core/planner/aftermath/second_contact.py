@@ -1,0 +1,57 @@
+"""Second contacts of the two that touched first: whether they come about, and on which sides.
+
+Knows poses on one clock and told sides; no report and no roads.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sgcad_core.geometry.plane import SIDES, Box, Floats, Size, contact_area, gaps_where_near, overlap_centers, sides_at
+from sgcad_core.planner.scene import Scene
+from sgcad_core.records.specs import Area
+
+MISSED = 1.5
+"""Cost of a stated contact behind the first one that does not happen."""
+NOT_AGAIN, WRONG_SIDE = 2.4, 1.0
+"""The same of a second contact of the first two, and of each side on which it happens otherwise than stated: any second
+contact is better than none."""
+_APART = 3
+"""Samples for which two are apart before they touch anew."""
+_OVERLAP_M = 1e-6
+"""Boxes that overlap less share no polygon."""
+Sides = tuple[Area | None, Area | None]
+
+
+def missed_again(scene: Scene, pair: frozenset[str]) -> float:
+    """Cost of how a second contact of a pair comes about in a settled scene: 0 as stated."""
+    names = sorted(pair)
+    told = tuple(scene.sides.get(pair, {}).get(name) for name in names)
+    one, other = (scene.tracks[name] for name in names)
+    seen = _again(one.poses, other.poses, one.size, other.size)
+    return min((WRONG_SIDE * _differing(told, sides) for sides in seen), default=NOT_AGAIN)
+
+
+def _differing(told: tuple[Area | None, ...], seen: tuple[Area, ...]) -> int:
+    return sum(one is not None and one != other for one, other in zip(told, seen, strict=True))
+
+
+def _again(a: Floats, b: Floats, size: Size, other: Size) -> list[tuple[Area, Area]]:
+    """The sides on which two tracks touch, each time behind the first one."""
+    met = np.flatnonzero(gaps_where_near(a, size, b, other) <= 0.0)
+    begins = met[np.diff(met, prepend=-_APART - 1) > _APART]
+    boxes = [(Box.at(a[k], size), Box.at(b[k], other)) for k in begins[1:]]
+    return [(contact_area(one, two), contact_area(two, one)) for one, two in boxes]
+
+
+def wrong_sides(first: tuple[Floats, Size], second: tuple[Floats, Size], told: Sides) -> NDArray[np.int_]:
+    """(n,) number of sides other than told on which boxes in (n, 3) poses of a size overlap; 0 where they do not."""
+    wrong = np.zeros(len(first[0]), int)
+    at = np.flatnonzero(gaps_where_near(*first, *second) < -_OVERLAP_M)
+    if len(at):
+        centers = overlap_centers(first[0][at], first[1], second[0][at], second[1])
+        for (poses, size), side in zip((first, second), told, strict=True):
+            if side is not None:
+                wrong[at] += sides_at(poses[at], size, centers)[0] != SIDES.index(side)
+    return wrong

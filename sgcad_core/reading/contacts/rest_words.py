@@ -1,0 +1,104 @@
+"""What a text says of the way to a rest: rotation, kind of place and its side, lane.
+
+Reads one segment or clause; knows no road. Lanes are counted as before the contact (`heading_lane_cues.read_lane`).
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple, cast
+
+from sgcad_core.reading.language import Rule, of_role, rule
+from sgcad_core.reading.motion.heading_lane_cues import read_lane
+from sgcad_core.reading.motion.motion_record import VehicleMotion
+from sgcad_core.reading.text.compass import WORDS, turned
+from sgcad_core.reading.text.normalise import number
+from sgcad_core.records.course import Hand, RestLane, Spin
+from sgcad_core.records.specs import Compass
+
+HANDS: dict[str, Hand] = {"left": "left", "right": "right"}
+
+
+class LaneRead(NamedTuple):
+    """A lane by number or word, the direction in which its traffic runs, and the words that tell it."""
+
+    lane: int | RestLane | None
+    way: Compass | None
+    words: str
+
+
+def rest_lane(clause: str, *, from_median: bool) -> LaneRead | None:
+    """The lane of a clause; None where it tells none, or a place between two.
+
+    `from_median`: "the number 1 lane" is the leftmost one.
+    """
+    if rule("course_rest.between_lanes").search(clause):
+        return None
+    own = rule("course_rest.own_lane").search(clause)
+    way = rule("course_rest.lane_way").search(clause)
+    heads = WORDS[next(filter(None, way.groups())).lower()] if way else None
+    center = rule("course_rest.center_lane").search(clause)
+    if own or center:
+        return LaneRead("own", heads, own[0]) if own else LaneRead("center_turn", heads, center[0] if center else "")
+    heard = VehicleMotion()
+    read_lane(heard, clause, from_median)
+    lane = heard.lane if heard.lane is not None else cast("RestLane | None", heard.lane_word)
+    if lane is None and way is None:
+        return None
+    return LaneRead(lane, heads, heard.sources["lane"].words if lane is not None else way[0] if way else "")
+
+
+class SpinRead(NamedTuple):
+    """A rotation with its degrees, where told; the words that tell it, and by which rule."""
+
+    way: Spin
+    degrees: float | None
+    words: str
+    rule: str
+
+
+def spin_told(text: str) -> SpinRead | None:
+    """The rotation that a text tells of a vehicle; None where it tells none."""
+    for told in (rule("course_rest.turned"), rule("course_rest.turned_to_side")):
+        if m := told.search(text):
+            words = m.groupdict()
+            said = next(filter(None, map(words.get, ("way", "round", "to")))).replace(" ", "").replace("-", "")
+            degrees = words.get("degrees") or words.get("deg")
+            way: Spin = "clockwise" if said in ("clockwise", "right") else "counterclockwise"
+            return SpinRead(way, float(degrees) if degrees else _turned_by(text), m[0], told.id)
+    return None
+
+
+def _turned_by(text: str) -> float | None:
+    """Degrees of a rotation that is told in quarter, half or full turns."""
+    m = rule("course_rest.turned_by").search(text)
+    if m is None:
+        return None
+    count = 1 if m["count"].lower() in ("a", "an") else number(m["count"])
+    return count * {"quarter": 90.0, "half": 180.0}.get(m["part"].lower(), 360.0)
+
+
+def leaves_road(text: str) -> bool:
+    """Whether a text tells a way off the road or back onto it, not just where something happened."""
+    places = (m for wording in of_role("place") for m in wording.finditer(text))
+    return any(rule("course_rest.left_road").search(m[0]) for m in places)
+
+
+def last_place(text: str) -> tuple[Rule, re.Match[str]] | None:
+    """The place that is named last; of wordings that read the same words the one of least weight."""
+    best: tuple[Rule, re.Match[str]] | None = None
+    for wording in of_role("place"):
+        for m in wording.finditer(text):
+            if best is None or m.start() >= best[1].end():
+                best = (wording, m)
+    return best
+
+
+def side_named(text: str) -> Compass | Hand | None:
+    found = None
+    for m in rule("course_rest.side_named").finditer(text):
+        word = (m["side"] or m["to"] or m["other"] or m["sent"]).lower()
+        found = HANDS.get(word) or WORDS.get(word)
+        if m["bound"] and word in WORDS:  # a northbound shoulder lies east of its road
+            found = turned(WORDS[word], 90)
+    return found

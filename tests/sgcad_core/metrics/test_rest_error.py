@@ -1,0 +1,56 @@
+"""The lane and the median in which a vehicle comes to rest, on a four-lane divided road that runs east."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sgcad_core.metrics.rest_error import rest_errors
+from sgcad_core.records.course import RestTold
+from sgcad_core.roads.lane_positions import Position
+from sgcad_core.roads.surface import RoadSurface
+
+WIDTH = 3.5
+NONE: frozenset[str] = frozenset()
+CENTERS = {("E", 1): -7.25, ("E", 2): -3.75, ("W", 2): 3.75, ("W", 1): 7.25}
+"""Metres north of the middle of the median, 4 m wide, by direction and place from the right."""
+
+
+def road() -> RoadSurface:
+    ends = {"E": (-50.0, 50.0), "W": (50.0, -50.0)}
+    starts, stops = (np.array([(ends[way][i], y) for (way, _), y in CENTERS.items()]) for i in (0, 1))
+    lanes = tuple(Position(place, 2, NONE, NONE, 1, 2) for _, place in CENTERS)
+    return RoadSurface(starts, stops, np.full(4, WIDTH / 2), (), lanes)
+
+
+def right(told: RestTold, north_m: float, came_rad: float = 0.0) -> dict[str, bool]:
+    began = np.array([-40.0, CENTERS["E", 2], 0.0])
+    return rest_errors(told, np.array([[0.0, north_m, 0.0]]), came_rad, road(), began).right()
+
+
+@pytest.mark.parametrize(
+    ("told", "lane"),
+    [(RestTold(lane=1), ("E", 1)), (RestTold(lane=-1), ("E", 2)), (RestTold(lane="right"), ("E", 1)),
+     (RestTold(lane=2, lane_way="W"), ("W", 2)), (RestTold(lane="own"), ("E", 2)),
+     (RestTold(lane="own", lane_way="W"), ("W", 2))],
+)  # fmt: skip
+def test_a_told_lane_is_right_in_that_lane_alone(told: RestTold, lane: tuple[str, int]) -> None:
+    assert {place: right(told, north)["lane"] for place, north in CENTERS.items()} == {
+        place: place == lane for place in CENTERS
+    }
+
+
+def test_a_told_direction_is_right_in_all_its_lanes() -> None:
+    found = {place for place, north in CENTERS.items() if right(RestTold(lane_way="W"), north)["lane"]}
+    assert found == {("W", 1), ("W", 2)}
+
+
+def test_a_lane_that_is_not_drawn_is_never_right() -> None:
+    assert not any(right(RestTold(lane="center_turn"), north)["lane"] for north in CENTERS.values())
+
+
+def test_a_median_lies_left_of_its_lanes() -> None:
+    told = RestTold(where="median")
+    assert right(told, 0.5)["where"]
+    assert not right(told, 10.0)["where"]
+    assert not right(told, CENTERS["E", 1])["where"]
