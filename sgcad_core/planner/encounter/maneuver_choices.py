@@ -46,7 +46,9 @@ _OTHER_SIDE, _STAYS_ON_ROAD = 0.25, 2.5
 _OFF_BEHIND_TURN_M = 16.0
 """Length of the way off the road of a vehicle that turns first."""
 ASKEW, _STEERS = "stands askew", "steers aside before contact"
-_LEAVES = "leaves its lane"
+_LEAVES, _SWERVES, _OFF_COURSE, _SKIDS = "leaves its lane", "swerves", "leaves its course", "skids before contact"
+UNTOLD = (_STEERS, _LEAVES, _SWERVES, _OFF_COURSE, _SKIDS)
+"""Notes on driving that a report does not tell unless it tells a swerve or a skid."""
 SLIDES = "slides into the contact at an angle that no steering explains"
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
@@ -213,7 +215,7 @@ def _swerves(role: Role) -> list[Drift]:
             found.append(_drift(role, place.aside_m + extra, cost, 1.3, _LEAVES))
     found += _from_beside(role)
     for left, cost in ((1.8, 0.4), (-1.8, 0.4), (3.3, 0.6), (-3.3, 0.6)):
-        found.append(_drift(role, left, cost, 1.0, "swerves"))
+        found.append(_drift(role, left, cost, 1.0, _SWERVES))
     return found
 
 
@@ -259,7 +261,7 @@ def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
             radius = max(abs(role.place.aside_m) / reach, 1.2 / tightest(role.size[0]))
             found.append(Twist(cost + 0.02, angle_rad, _STEERS, radius_m=radius))
     if role.may_skid:
-        found.append(Twist(cost + 0.1, angle_rad, "skids before contact", skids=True))
+        found.append(Twist(cost + 0.1, angle_rad, _SKIDS, skids=True))
     return found
 
 
@@ -294,5 +296,5 @@ def homing(role: Role) -> list[Drift]:
     place, lines = role.place, _from_beside(role)[:2] or drifts(role)[:2]
     if place.apart_m < 0.8:
         return lines
-    bent = _drift(role, math.hypot(place.ahead_m, place.aside_m), 0.6, 1.3, "leaves its course")
+    bent = _drift(role, math.hypot(place.ahead_m, place.aside_m), 0.6, 1.3, _OFF_COURSE)
     return [*lines, bent._replace(left_m=place.aside_m, ahead_m=place.ahead_m or 1e-6)]
