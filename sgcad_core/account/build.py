@@ -16,7 +16,16 @@ from sgcad_core.account.second_opinion import weighed
 from sgcad_core.account.told_places import told_place_items
 from sgcad_core.account.unread_clauses import unread_clauses
 from sgcad_core.account.unread_text import unread_items
-from sgcad_core.account.verdict import ORDER, contradictions, guesses, odd_driving, places, sentence_of, verdict_of
+from sgcad_core.account.verdict import (
+    ORDER,
+    contradictions,
+    guesses,
+    odd_driving,
+    places,
+    sentence_of,
+    untold_swerves,
+    verdict_of,
+)
 from sgcad_core.case.records import Stage
 from sgcad_core.records.facts import Fact
 
@@ -38,7 +47,8 @@ def account_of(
     if made is None:
         return NOTHING.model_copy(update={"disagreements": tuple(asked)})
     told, differing = weighed(made, [*_told(made), *_limits(notes)], asked, models)
-    told += [*odd_driving(made, notes), *places(made), *unread_clauses(made), *contradictions(made), *guesses(made)]
+    told += [*odd_driving(made, notes), *untold_swerves(made, notes), *places(made), *unread_clauses(made)]
+    told += [*contradictions(made), *guesses(made)]
     ranked = sorted(told, key=lambda item: ORDER.index(item.kind))
     items = (*ranked, *assumed_items(made, facts))
     verdict = verdict_of(items, differing)

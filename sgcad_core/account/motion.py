@@ -6,7 +6,7 @@ An absent vehicle is one lacking item, its motion none. Angles are clockwise deg
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -20,10 +20,10 @@ from sgcad_core.metrics.labels.course_labels import POINT_DEG, CourseLabel, Rest
 from sgcad_core.metrics.labels.observed_crash import VehicleMotion
 from sgcad_core.metrics.lane_places import lane_steps
 from sgcad_core.metrics.rest_error import attitude_of, near_m
-from sgcad_core.metrics.road_departure import hand_of, left_road
+from sgcad_core.metrics.road_departure import hand_of, left_road, moves_made
 from sgcad_core.metrics.told_lanes import LANE_WORDS, TURN_LANES, ToldLane, told_lane
 from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
-from sgcad_core.records.course import DepartureSide
+from sgcad_core.records.course import DepartureSide, Move
 from sgcad_core.records.facts import Fact, Value
 from sgcad_core.roads.lane_positions import position
 
@@ -32,6 +32,14 @@ _HEADING_RAD = math.radians(45.0 + 22.5)
 _LIES = {"wheels": "wheels", "roof": "roof", "left": "left side", "right": "right side"}
 _STANDS_MPS = 1.0
 """Below it a vehicle stands, as reports have it."""
+_AS_MOVES = (
+    "crossing_centerline",
+    "departing_road_left",
+    "departing_road_right",
+    "lane_change_left",
+    "lane_change_right",
+)
+"""Maneuvers that are judged as one of several moves, where these are told."""
 _SPIN_DEG = 60.0
 """Tolerance of a stated angle of spin: reports give quarter turns."""
 
@@ -57,10 +65,23 @@ def motion_items(made: ExecutedCase) -> Iterator[Item]:
         seen = judged(made, parts[1], parts[2], fact)
         if seen is not None:
             yield made.item(seen.has, fact.field, fact.value, seen.instead, why=seen.why)
+    for who, course in made.reading.crash.courses.items():
+        yield from _moves(made, who, course.moves) if who in made.tracks else ()
+
+
+def _moves(made: ExecutedCase, who: str, moves: Sequence[Move]) -> Iterator[Item]:
+    """One item for each of several moves before the first contact, in their order."""
+    seen = moves_made(made.graph, VehicleMotion(made.crash, who), moves, made.sizes[who][0]) if moves else ()
+    for number, (move, has) in enumerate(zip(moves, seen, strict=True)):
+        text, why = f"{who} {move.words}", "it does not do so there in the scenario"
+        yield made.item(has, f"vehicles.{who}.moves.{number}", move.words, why=why, text=text)
 
 
 def judged(made: ExecutedCase, who: str, name: str, fact: Fact) -> Comparison | None:
     """A vehicle's fact of motion compared with the execution; None: nothing to compare with."""
+    course = made.reading.crash.courses.get(who)
+    if course and course.moves and (name == "evasion.steers" or fact.value in _AS_MOVES):
+        return None
     if name in _JUDGES:
         return _JUDGES[name](made, who, fact.value)
     if name not in _LABELS:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
-from sgcad_core.kinds import JUNCTIONS, ROUNDABOUT
+from sgcad_core.kinds import DRIVEWAY, JUNCTIONS, PARKING_LOT, ROUNDABOUT
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.text.normalise import NUMBERS, Sentence
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES, is_impact
@@ -46,8 +46,11 @@ def _of_sentence(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     yield from _numbers(made, sentence)
     yield from _called(made, sentence)
     yield from _further(made, sentence)
+    yield from _served(made, sentence)
     yield from _struck(made, sentence)
+    yield from _things(made, sentence)
     yield from _places(made, sentence)
+    yield from _ground(made, sentence)
     yield from _contact(made, sentence)
     yield from _deeds(made, sentence)
 
@@ -94,6 +97,19 @@ def _further(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
         yield _lacks(sentence, "further", match[0].lower(), f"{match[0]!r} is named", "it is not in the scenario")
 
 
+def _served(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
+    """Vehicles of services, and vehicles that others wait for or pass, that have no number and are not drawn."""
+    numbered = {v.id for v in made.reading.crash.vehicles}
+    if made.reading.crash.unnumbered or any(name.startswith("V") for name in made.tracks.keys() - numbered):
+        return
+    kinds = {actor.type for actor in made.scenario.actors}
+    for wording in (rule("account.served"), rule("account.passed")):
+        for match in wording.finditer(sentence.text):
+            words = match["kind"].lower()
+            if not any(kind in words for kind in kinds - {"car"}):
+                yield _lacks(sentence, "further", words, f"{words!r} is named", "it is not in the scenario")
+
+
 def _struck(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     """People and animals in sentences about a contact, where the scenario has no actor of their kind."""
     if not is_impact(sentence.text):
@@ -103,6 +119,21 @@ def _struck(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
         match = user.search(sentence.text)
         if match and not any(name[0] in letters for name in made.tracks):
             yield _lacks(sentence, "struck", match[0].lower(), f"{match[0]!r} in a contact", "not in the scenario")
+
+
+def _things(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
+    """Things that are told to be struck, where the report's contacts have none of that name."""
+    words = _met(made)
+    for match in rule("account.to_thing").finditer(sentence.text):
+        thing = match["thing"].lower()
+        if not any(thing.split()[-1].rstrip("s") in word or word in thing for word in words):
+            yield _lacks(sentence, "struck", thing, f"{thing!r} in a contact", "not in the scenario")
+
+
+def _met(made: ExecutedCase) -> set[str]:
+    """The words of all things, people and animals of the report's contacts; each has its own item."""
+    crash = made.reading.crash
+    return {other.word.lower() for other in crash.others} | {impact.other.lower() for impact in crash.impacts}
 
 
 # ------------------------------------------------------------------ places
@@ -118,6 +149,30 @@ def _places(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     circle = next(rule(record.rule) for record in JUNCTIONS if record.round)
     if named := circle.search(sentence.text):
         yield _lacks(sentence, "junction", ROUNDABOUT, f"{named[0]!r} is named", "no roundabout is drawn")
+
+
+def _ground(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
+    """Medians, driveways and ground beside the road that are named, where none is drawn."""
+    spec = made.network.spec
+    roads = spec.roads if spec else ()
+    lot = made.reading.roads.junction.kind == PARKING_LOT
+    there = {
+        "account.median": any(r.median != "none" for r in roads) or _parted(made),
+        "account.drive": lot or any(r.kind == DRIVEWAY or r.alley for r in roads),
+    }
+    for wording in (rule("account.median"), rule("account.drive")):
+        if not there[wording.id] and (match := wording.search(sentence.text)):
+            yield _lacks(sentence, "ground", match[0].lower(), f"{match[0]!r} is named", "none is drawn")
+    words = _met(made)
+    for match in rule("account.ground").finditer(sentence.text):
+        if not any(match[0].lower() in word for word in words):
+            yield _lacks(sentence, "ground", match[0].lower(), f"{match[0]!r} is named", "none is drawn")
+
+
+def _parted(made: ExecutedCase) -> bool:
+    """Whether a road is drawn as two one-way roads beside each other."""
+    spec = made.network.spec
+    return spec is not None and any(not (road.lanes_forward and road.lanes_backward) for road in spec.roads)
 
 
 # ------------------------------------------------------------------ contacts and acts

@@ -14,8 +14,10 @@ from sgcad_core.account.records import Disagreement, Item, Kind, Verdict
 from sgcad_core.account.words import phrase
 from sgcad_core.kinds import ALLEY, DRIVEWAY
 from sgcad_core.metrics.untold_places import untold_places
+from sgcad_core.planner.encounter.maneuver_choices import UNTOLD
 from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.provenance.crash_provenance import CONFIDENCE
+from sgcad_core.records.course import CourseTold
 from sgcad_core.records.facts import Fact
 
 ORDER: tuple[Kind, ...] = ("lacks", "unread", "contradicts", "guessed", "has", "assumed")
@@ -67,6 +69,19 @@ def odd_driving(made: ExecutedCase, notes: Sequence[Note]) -> Iterator[Item]:
                 text="the first contact in ordinary driving", reason=note.text.partition("] ")[2].partition(" at ")[0],
             )  # fmt: skip
             return
+
+
+def untold_swerves(made: ExecutedCase, notes: Sequence[Note]) -> Iterator[Item]:
+    """A lack for each vehicle that swerves or skids into the contact where nothing of the kind is told of it."""
+    for note in notes:
+        words = next((words for words in UNTOLD if note.text == f"{note.subject} {words}"), None)
+        told = made.reading.crash.driven.get(note.subject, CourseTold())
+        leaves = told.steers or told.lost_control or told.departs or told.moves
+        if note.kind == "plan" and words and not leaves and made.reading.crash.near_crash is None:
+            yield Item(
+                kind="lacks", field=f"vehicles.{note.subject}.driving", subject=note.subject, value=None,
+                text=f"{note.subject} in ordinary driving", reason=f"it {words}, which nobody tells",
+            )  # fmt: skip
 
 
 def places(made: ExecutedCase) -> Iterator[Item]:

@@ -1,4 +1,4 @@
-"""Whether a vehicle has left the road where it touches something, and on which side.
+"""Whether a vehicle has left the road where it touches something, and on which side; which told moves it makes.
 
 Compares its center and the middle of its front with the lanes of a network (`lane_places`). Knows no report.
 """
@@ -6,14 +6,18 @@ Compares its center and the middle of its front with the lanes of a network (`la
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sgcad_core.geometry.plane import Floats
+from sgcad_core.geometry.plane import Floats, wrap_angle
 from sgcad_core.metrics.labels.course_labels import POINT_DEG
+from sgcad_core.metrics.labels.observed_crash import VehicleMotion
 from sgcad_core.metrics.lane_places import Place, lane_heading, lane_steps
 from sgcad_core.metrics.rest_error import compass_rad
-from sgcad_core.records.course import DepartureSide, Hand
+from sgcad_core.records.course import DepartureSide, Hand, Move
 from sgcad_core.roads.lane_graph import LaneGraph
 
 _ALONG = math.sin(math.radians(20.0))
@@ -49,3 +53,58 @@ def left_road(graph: LaneGraph, poses: Floats, length_m: float) -> Hand | None:
     way = along if along is not None else float(poses[last, 2])
     east, north = seen[:2] - poses[last, :2]
     return "left" if np.cos(way) * north - np.sin(way) * east > 0 else "right"
+
+
+_STEERS_M = 0.4
+"""Least way to the side of a visible swerve."""
+_MOVES_M = 0.05
+"""Way between two samples from which on a direction of travel shows."""
+_YAW_RAD = math.radians(8.0)
+"""Least angle of a box against its line in a visible yaw."""
+
+
+def moves_made(graph: LaneGraph, one: VehicleMotion, moves: Sequence[Move], length_m: float) -> list[bool]:
+    """For each told move whether a vehicle makes it before its first contact, behind the one before it.
+
+    A move that is missed is passed over: the next one is looked for from the same time on.
+    """
+    places = np.array(lane_steps(graph, one.before).places)
+    found, at = [], 0
+    for number, move in enumerate(moves):
+        seen = _seen(one, places, move, at)
+        if seen is None and move.kind == "departs" and number == len(moves) - 1:
+            off = left_road(graph, one.before, length_m)
+            seen = at if off is not None and _fits(move, one, off) else None
+        found.append(seen is not None)
+        at = at if seen is None else seen
+    return found
+
+
+def _seen(one: VehicleMotion, places: NDArray[np.str_], move: Move, at: int) -> int | None:
+    """The first sample from one on by which a move is made."""
+    aside, rest = one.aside[at:], places[at:]
+    if move.kind == "departs":
+        off = np.isin(rest, [*_OFF])
+        shown = off & np.array([_fits(move, one, "left" if left > 0 else "right") for left in aside])
+    elif move.kind == "returns":
+        away = np.maximum.accumulate(np.abs(aside)) - np.abs(aside) > _STEERS_M
+        shown = np.isin(rest, [*_ON, "junction"]) & away
+    elif move.kind == "crosses":
+        shown = np.isin(rest, ["opposing", "center_lane"]) | ((rest == "off") & (aside > 0))
+    elif move.kind == "yaws":
+        shown = _slip(one)[at:] * (1 if move.side == "counterclockwise" else -1) > _YAW_RAD
+    else:
+        gone = aside - np.minimum.accumulate(aside), np.maximum.accumulate(aside) - aside
+        shown = {"left": gone[0], "right": gone[1]}.get(str(move.side), np.maximum(*gone)) > _STEERS_M
+    return at + int(shown.argmax()) if shown.any() else None
+
+
+def _fits(move: Move, one: VehicleMotion, hand: Hand) -> bool:
+    return hand_of(cast("DepartureSide", move.side or "either"), float(one.before[0, 2])) in (None, hand)
+
+
+def _slip(one: VehicleMotion) -> Floats:
+    """(n,) angle of the box against its way, left positive; 0 where it stands."""
+    step = np.gradient(one.before[:, :2], axis=0)
+    angle: Floats = wrap_angle(one.before[:, 2] - np.arctan2(step[:, 1], step[:, 0]))
+    return np.where(np.hypot(*step.T) > _MOVES_M, angle, 0.0)

@@ -105,7 +105,8 @@ def allowed(actor: ActorInfo, facts: CrashFacts, lost: bool) -> tuple[frozenset[
     before it."""
     if _loses_control(actor.id, facts, lost):
         return frozenset(_OUTSIDE), frozenset(_OUTSIDE)
-    if facts.driven.get(actor.id, CourseTold()).departs:
+    course = facts.driven.get(actor.id, CourseTold())
+    if course.departs or course.moves:
         return frozenset(_OUTSIDE), frozenset(_OUTSIDE)
     vehicle = facts.vehicle(actor.id)
     told = set(_ALLOWED.get(actor.maneuver, ()))

@@ -95,6 +95,16 @@ class Role:
         return DRIVING.friction_mps2(self.surface)
 
 
+class Swing(NamedTuple):
+    """A part of a line: to the left by `left_m` over `length_m`, ending at a station, with the box turned by
+    `yaw_rad`."""
+
+    left_m: float
+    length_m: float
+    end_m: float
+    yaw_rad: float = 0.0
+
+
 class Drift(NamedTuple):
     """A change of line: to the left by `left_m` over `length_m`, ending at a station; `back`: and back again."""
 
@@ -112,14 +122,34 @@ class Drift(NamedTuple):
     """Length between the change and the way back, where it goes `back`."""
     evades: bool = False
     """Whether it is the evasion that the report states."""
+    earlier: tuple[Swing, ...] = ()
+    """Told moves before this one; `left_m` is counted from the line before all of them."""
+    yaw_rad: float = 0.0
+    """Angle by which the box turns against its line meanwhile, in a told skid."""
+
+    @property
+    def begins_m(self) -> float:
+        """The station at which it begins."""
+        first = self.earlier[0] if self.earlier else self
+        return first.end_m - first.length_m
 
     def profile(self, s_m: Floats) -> Floats:
         """(n,) metres to the left of the undisturbed line at stations."""
         rise = ramp(s_m, self.end_m - self.length_m, self.length_m)
         if self.back:
             rise = rise - ramp(s_m, self.end_m + self.holds_m, self.length_m)
-        profile: Floats = self.before_m + self.left_m * rise
+        gone = sum(swing.left_m for swing in self.earlier)
+        profile: Floats = self.before_m + (self.left_m - gone) * rise
+        for swing in self.earlier:
+            profile = profile + swing.left_m * ramp(s_m, swing.end_m - swing.length_m, swing.length_m)
         return profile
+
+    def yaw(self, s_m: Floats) -> Floats:
+        """(n,) angle of the box against its line at stations, radians."""
+        angle: Floats = self.yaw_rad * ramp(s_m, self.end_m - self.length_m, self.length_m)
+        for swing in self.earlier:
+            angle = angle + swing.yaw_rad * ramp(s_m, swing.end_m - swing.length_m, swing.length_m)
+        return angle
 
     def on(self, base: Path, place_m: float) -> Path:
         """A line with this change on it; `ahead_m` is measured along the heading at the station `place_m`."""
@@ -128,7 +158,8 @@ class Drift(NamedTuple):
             c, s = math.cos(heading), math.sin(heading)
             by = np.array([self.ahead_m * c - self.left_m * s, self.ahead_m * s + self.left_m * c])
             return base.displaced(ramp(base.s_m, self.end_m - self.length_m, self.length_m)[:, None] * by)
-        return base.moved(self.profile(base.s_m)) if self.left_m or self.before_m else base
+        moves = self.left_m or self.before_m or self.earlier
+        return base.moved(self.profile(base.s_m)) if moves else base
 
 
 class Pacing(NamedTuple):

@@ -53,7 +53,7 @@ def unseen_evasion(actor: str, course: Course, told: CourseTold, poses: Floats) 
     recent = poses[-round(BEFORE_S / STEP_S) - 1 :]
     steps_m = np.hypot(*np.diff(recent[:, :2], axis=0).T)
     aside = np.array([_aside(course, pose) for pose in recent[[0, -2, -1]]]) if told.steers else np.zeros(0)
-    if told.steers and not steers(told.steers, aside, float(steps_m[-1])):
+    if told.steers and not told.moves and not steers(told.steers, aside, float(steps_m[-1])):
         yield f"{actor} has hardly begun to steer aside when they touch"
     if told.brakes and not brakes(steps_m / STEP_S):
         yield f"{actor} has hardly begun to brake when they touch"

@@ -31,12 +31,14 @@ from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.encounter.try_elsewhere import WholeCourse, least_missed
 from sgcad_core.planner.knocked_aside import drive_over, knock_aside
 from sgcad_core.planner.later_meetings import LaterMeetings
+from sgcad_core.planner.lead_time import lead_alone, lead_of
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.departures import departs, departure_station
 from sgcad_core.planner.lines.gore_lines import into_gores
 from sgcad_core.planner.lines.maneuver_course import course_of
-from sgcad_core.planner.maneuver_visible import seen_s, unseen_evasion, unseen_maneuver
-from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, gentle_mps2
+from sgcad_core.planner.lines.told_moves import with_room
+from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
+from sgcad_core.planner.motion import STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.records.course import NOTHING_TOLD, Courses, CourseTold
@@ -51,12 +53,6 @@ _TOLD_S_PER_M = 0.14
 """Time for a told distance to the rest: slowed evenly from 14 m/s."""
 _MANEUVER_MISSED = 3.0
 """Cost of a stated maneuver that is not visible: more than any two parts of the course after the contact."""
-WAITS_S = 1.5
-"""Time for which a vehicle that starts from rest is seen standing."""
-_LEAST_LEAD_S = 3.0
-"""Where a fast vehicle's road is too short for the usual time before the contact, it starts where the road does."""
-_STILL_S = 1.0
-"""Time on the undisturbed course before a maneuver begins."""
 
 
 class Plan(Record):
@@ -125,6 +121,11 @@ class _Cast:
         """Objects that are struck on the way to rest; they are placed when that way is known."""
         return frozenset(strike.thing.id for strike in strikes_of(self.behavior, self.contacts))
 
+    @property
+    def wandering(self) -> list[str]:
+        """Those of which several moves are told."""
+        return [name for name in self.actors if self.told.get(name, CourseTold()).moves]
+
     @cached_property
     def possible(self) -> list[Contact]:
         """The contacts of the behavior that are possible."""
@@ -158,7 +159,7 @@ class _Cast:
     ) -> WholeCourse:
         """The whole course from an encounter on, and its distance from what is stated; this object stays unchanged."""
         cast = replace(self, tractors=dict(self.tractors), notes=list(self.notes))
-        lead, after = round(LEAD_S[0] / STEP_S), round(AFTER_S / STEP_S)
+        lead, after = round(lead_alone(map(cast.alone, cast.wandering)) / STEP_S), round(AFTER_S / STEP_S)
         scene = cast.staged(found) if found else Scene(lead + after + 1, lead)
         expect_later_contacts(scene, cast.contacts)
         scene.settle()
@@ -200,14 +201,7 @@ class _Cast:
         """Both actors with what they tow on the world clock, through the collision."""
         meeting = found.meeting
         pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
-        lead = max((own - m.time_at(m.begins_m) for _, m, own in pair if not m.standing), default=0.0) + _STILL_S
-        lead = max([lead, *(seen_s(option.role, m, own) for option, m, own in pair)])
-        rest_s = [own - m.starts_s for _, m, own in pair if m.starts_s is not None]
-        lead = max([lead, *(since + WAITS_S for since in rest_s)])
-        driven = ((o, m, own) for o, m, own in pair if not m.standing and m.starts_s is None)
-        room = min((own - m.time_at(o.role.course.first_m) for o, m, own in driven), default=LEAD_S[1])
-        least = min(LEAD_S[0], max(room, _LEAST_LEAD_S))
-        contact = math.ceil(min(max(min(lead, room), least), LEAD_S[1]) / STEP_S)
+        contact = math.ceil(lead_of(pair) / STEP_S)
         after = AFTER_S + self._runs_on_s()
         again = frozenset(name for c in self.contacts[1:] for name in (c.striker, c.struck))
         scene = Scene(contact + round(after / STEP_S) + 1, contact, again, self.behavior.surface)
@@ -278,19 +272,19 @@ class _Cast:
         for actor in self.behavior.actors:
             if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in self.things | aside:
                 continue
-            if note := place_clear(scene, self.role(actor.id) if self.possible else self._alone(actor.id)):
+            if note := place_clear(scene, self.role(actor.id) if self.possible else self.alone(actor.id)):
                 self.notes.append(note)
             track = scene.tracks[actor.id]
             own = track.own_s if track.motion.standing else track.own_s + scene.contact * STEP_S
             self._couple(scene, actor.id, own)
 
-    def _alone(self, name: str) -> Role:
+    def alone(self, name: str) -> Role:
         """An actor where nothing is touched: it leaves the road as told."""
         role, told = self.role(name), self.told.get(name, CourseTold())
         if self.behavior.near_crash or not departs(role.actor.maneuver, told.departs):
             return role
         at = departure_station(role.course, role.actor.maneuver, role.place.station_m)
-        return replace(role, told=told, place=role.place._replace(station_m=at))
+        return with_room(replace(role, told=told, place=role.place._replace(station_m=at)))
 
     def role(self, name: str) -> Role:
         """An actor at its usual place, for an encounter with another one."""

@@ -23,6 +23,21 @@ RestLane = Literal["own", "left", "right", "middle", "left_turn", "right_turn", 
 """A lane at rest by its word; own: the one in which the vehicle began."""
 DepartureSide = Compass | Hand | Literal["either"]
 """Where a vehicle leaves the road: a compass word, a hand as seen in its direction of travel; either: not told."""
+MoveKind = Literal["departs", "returns", "steers", "crosses", "yaws"]
+"""Leaves the road; comes back on it, or into its lane; steers aside; crosses the center line; turns in a skid."""
+
+
+@dataclass(frozen=True)
+class Move:
+    """One of several moves before the first contact. `side`: of the road, or the sense of a yaw; None: none is told."""
+
+    kind: MoveKind
+    side: DepartureSide | Spin | None = None
+
+    @property
+    def words(self) -> str:
+        """For people and facts: "departs right", "returns"."""
+        return f"{self.kind} {self.side}" if self.side not in (None, "either") else self.kind
 
 
 @dataclass(frozen=True)
@@ -69,6 +84,8 @@ class CourseTold:
     lost_control: bool = False
     departs: DepartureSide | None = None
     """Leaves the road before its first contact, or before it rolls over where it has none."""
+    moves: tuple[Move, ...] = ()
+    """The moves before that contact in order, where they lead to more than one side: off the road, back, across."""
     spin: Spin | None = None
     """How it turned after its first contact."""
     spin_deg: float | None = None

@@ -20,6 +20,7 @@ ActKind = Literal[
     "lane_change", "lane_change_left", "lane_change_right", "merge", "overtaking", "crossing_centerline",
     "departing_road_left", "departing_road_right", "negotiating_curve", "backing", "leaving_parking", "other",
     "brakes", "steers", "no_evasion", "loses_control", "contact", "spins", "rolls_over", "rests",
+    "departs", "returns", "crosses", "yaws",
 ]  # fmt: skip
 STANDING: tuple[ActKind, ...] = ("stopped", "parked")
 MOVING: tuple[ActKind, ...] = (

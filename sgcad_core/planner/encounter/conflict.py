@@ -26,6 +26,7 @@ from sgcad_core.planner.encounter.pairing import Encounter, Ways, cannot, search
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.departures import departs, departure_station, side_of
+from sgcad_core.planner.lines.told_moves import with_room
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
 from sgcad_core.records.course import Courses, CourseTold
 from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact, size_m
@@ -125,6 +126,9 @@ class Conflicts:
             ((a, b, places[0], contact.striker_area), (b, a, places[1], contact.struck_area))
         ]  # fmt: skip
         first, second = pair
+        if b.record.thing:
+            first = with_room(first)
+            second = replace(second, place=first.place)
         return _facing_other(first, second), _facing_other(second, first)
 
     def _told(self, actor: Actor, other: Actor) -> CourseTold:

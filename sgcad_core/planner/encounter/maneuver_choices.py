@@ -25,7 +25,9 @@ from sgcad_core.planner.encounter.pacing_choices import from_another_road
 from sgcad_core.planner.lines.axle_to_box import tightest
 from sgcad_core.planner.lines.crossing import LEAVES, crossings, end_meets_flank
 from sgcad_core.planner.lines.departures import DEPARTURES, aside_m, departs, departure_sides
+from sgcad_core.planner.lines.told_moves import last_move, with_earlier
 from sgcad_core.planner.lines.turning import corner_lines
+from sgcad_core.records.course import Move, Steering
 
 SWERVE_MPS2 = 6.0
 """Lateral acceleration that gives the length of a swerve; the speed follows from friction."""
@@ -36,11 +38,18 @@ _EVADED_FROM = ("straight", "negotiating_curve", "slowing", "other")
 OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
 OTHER_LANE_COST = 1.0
 """More than another speed: a told lane is taken wherever the two can meet from it."""
+_SHARES = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
+"""Shares of the shift of a maneuver with their costs."""
+_WITHOUT_MOVES = 1.5
+"""Cost of a line without the moves that are told."""
 _OTHER_SIDE, _STAYS_ON_ROAD = 0.25, 2.5
 """Costs of leaving the road on the unlikelier side, and of a told departure that is not driven."""
 _OFF_BEHIND_TURN_M = 16.0
 """Length of the way off the road of a vehicle that turns first."""
 ASKEW, _STEERS = "stands askew", "steers aside before contact"
+_SWERVES, _OFF_COURSE, _SKIDS = "swerves", "leaves its course", "skids before contact"
+UNTOLD = (_STEERS, _SWERVES, _OFF_COURSE, _SKIDS)
+"""Notes on driving that a report does not tell unless it tells a swerve or a skid."""
 SLIDES = "slides into the contact at an angle that no steering explains"
 _GENTLE = 0.2
 """Cost of a gentle change of line where a steep one is needed."""
@@ -53,6 +62,26 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
 
     Not `fine`: without those that differ by less than a metre.
     """
+    last = last_move(role)
+    return _lines(role, fine=fine) if last is None else _wandering(role, last, fine=fine)
+
+
+def _wandering(role: Role, last: Move, *, fine: bool) -> list[Drift]:
+    """The told moves in their order; or, dearer than those, the lines without the earlier ones."""
+    if last.kind == "departs":
+        lines = _departures(role, fine=fine)
+    elif last.kind == "crosses":
+        lines = [*_shifts(role, role.course.opposite_m, _SHARES if fine else [_SHARES[0], _SHARES[3]])]
+    elif last.kind == "steers":
+        lines = _steering(role, "right" if last.side == "right" else "left")
+    else:
+        lines = [Drift(0.0), *(_in_lane(role) if fine else [])]
+    plain = (line._replace(cost=line.cost + _WITHOUT_MOVES) for line in _lines(role, fine=fine))
+    return [*with_earlier(role, lines), *plain]
+
+
+def _lines(role: Role, *, fine: bool) -> list[Drift]:
+    """The lines of its maneuver, or those of its lane."""
     if departs(role.actor.maneuver, role.told.departs):
         return _departures(role, fine=fine)
     steep = _steep(role)
@@ -63,18 +92,14 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
         return [Drift(0.0), *(d._replace(cost=d.cost + 0.2) for d in changes)] if joins else changes
     wanted = _maneuver_shift(role)
     if wanted is not None:
-        shares = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
+        shares = _SHARES
         if role.spins or role.glances:
             shares = [(0.63, 0.0), (1.37, 0.05), (1.0, 0.1), *shares[1:]]
         shares = shares if fine else [shares[0], shares[3], shares[4]]
         return [*_behind(steep, _shifts(role, wanted, shares)), Drift(0.8)]
     near = _in_lane(role) if fine else []
     if evading := _evading(role):
-        return [
-            *evading,
-            Drift(_NOT_EVADING),
-            *(near_by._replace(cost=near_by.cost + _NOT_EVADING) for near_by in near),
-        ]
+        return [*evading, *(line._replace(cost=line.cost + _NOT_EVADING) for line in (Drift(0.0), *near))]
     return [Drift(0.0), *near, *corner_lines(role), *_other_lanes(role), *_swerves(role)]
 
 
@@ -114,7 +139,12 @@ def _evading(role: Role) -> list[Drift]:
     """Swerves to the stated side; none where no steering is stated, or where the maneuver has its own line."""
     if role.told.steers is None or role.actor.maneuver not in _EVADED_FROM:
         return []
-    hands = {"left": (1.0,), "right": (-1.0,)}.get(role.told.steers, (1.0, -1.0))
+    return _steering(role, role.told.steers)
+
+
+def _steering(role: Role, told: Steering) -> list[Drift]:
+    """Swerves to a side, as told."""
+    hands = {"left": (1.0,), "right": (-1.0,)}.get(told, (1.0, -1.0))
     ways = ((1.2, 0.0, 1.2), (0.7, 0.02, 1.2), (1.8, 0.05, 1.2), (2.6, 0.1, 1.1), (1.2, 0.1, 0.8), (3.6, 0.2, 1.0))
     return [
         _drift(role, hand * left, cost, ease, f"steers {'left' if hand > 0 else 'right'}, as told")._replace(
@@ -203,7 +233,7 @@ def _swerves(role: Role) -> list[Drift]:
             found.append(_drift(role, place.aside_m + extra, cost, 1.3, LEAVES))
     found += _from_beside(role)
     for left, cost in ((1.8, 0.4), (-1.8, 0.4), (3.3, 0.6), (-3.3, 0.6)):
-        found.append(_drift(role, left, cost, 1.0, "swerves"))
+        found.append(_drift(role, left, cost, 1.0, _SWERVES))
     return found
 
 
@@ -249,7 +279,7 @@ def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
             radius = max(abs(role.place.aside_m) / reach, 1.2 / tightest(role.size[0]))
             found.append(Twist(cost + 0.02, angle_rad, _STEERS, radius_m=radius))
     if role.may_skid:
-        found.append(Twist(cost + 0.1, angle_rad, "skids before contact", skids=True))
+        found.append(Twist(cost + 0.1, angle_rad, _SKIDS, skids=True))
     return found
 
 
@@ -284,5 +314,5 @@ def homing(role: Role) -> list[Drift]:
     place, lines = role.place, _from_beside(role)[:2] or drifts(role)[:2]
     if place.apart_m < 0.8:
         return lines
-    bent = _drift(role, math.hypot(place.ahead_m, place.aside_m), 0.6, 1.3, "leaves its course")
+    bent = _drift(role, math.hypot(place.ahead_m, place.aside_m), 0.6, 1.3, _OFF_COURSE)
     return [*lines, bent._replace(left_m=place.aside_m, ahead_m=place.ahead_m or 1e-6)]

@@ -188,8 +188,9 @@ def driving(option: Option) -> Motion:
     drift, pace = option.drift, _pace(role, option)
     line, path, drivable = _lines(option, pace)
     time, station = drive(line, pace, place, (path, role.course.path))
-    drivable = drivable and not starts_beside(role, line, (time, station))
+    drivable = drivable and (bool(drift.earlier) or not starts_beside(role, line, (time, station)))
     path = skidding(path, option.twist, place, pace.cruise_mps)
+    path = path.turned(drift.yaw(path.s_m)) if drift.yaw_rad or drift.earlier else path
     begins = _begins(role, drift)
     penalty = misfit(role, path, drift, begins)
     if drift.left_m or drift.before_m or option.twist.angle_rad or option.dodge:
@@ -279,7 +280,7 @@ def _begins(role: Role, drift: Drift) -> float:
     """Station at which the maneuver begins to show."""
     turn = role.course.turn
     shown = [turn.entry_m - 2.0] if turn is not None else []
-    shown += [drift.end_m - drift.length_m] if drift.left_m and drift.end_m > 0 else []
+    shown += [drift.begins_m] if drift.earlier or (drift.left_m and drift.end_m > 0) else []
     return min(shown, default=role.place.station_m - (3.0 if role.actor.record.walks else 10.0))
 
 
@@ -288,7 +289,7 @@ def _pace(role: Role, option: Option) -> Pace:
     speed = usual_speed(role) * pacing.factor
     usual = 6.5 if role.actor.maneuver != "u_turn" else 4.5
     curve = max(usual * pacing.factor, speed if told else 3.0)
-    hard = told or bool(option.drift.note or option.twist.note or option.dodge)
+    hard = told or bool(option.drift.note or option.twist.note or option.dodge or option.drift.earlier)
     pace = Pace(speed, curve, starts_at_m(role, pacing), grip_mps2=role.grip_mps2, hard=hard)
     slowed = 0.35 * speed if role.actor.maneuver == "slowing" else BRAKED_TO * speed
     if role.actor.maneuver == "slowing" or role.told.brakes:

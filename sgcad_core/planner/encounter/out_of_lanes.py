@@ -82,11 +82,11 @@ def stands_out_of_lanes(role: Role, left_m: float, angle_rad: float) -> bool:
 
 
 def _is_free(role: Role) -> bool:
-    """Whether it need not keep to lanes: it is told to lose control, is in a gore, no lane holds it, or nothing else
-    is left."""
+    """Whether it need not keep to lanes: it is told to lose control, or to leave its lane and come back, is in a gore,
+    no lane holds it, or nothing else is left."""
     record = role.actor.record
     lost = role.told.lost_control or (role.may_skid and not role.other_lost)
-    lost = lost or departs(role.actor.maneuver, role.told.departs)
+    lost = lost or departs(role.actor.maneuver, role.told.departs) or bool(role.told.moves)
     return lost or role.leaves_lanes or role.actor.gore or not record.wheeled or record.keeps_right
 
 

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from sgcad_core.reading.actors.vehicles import Roster
+from sgcad_core.reading.contacts.before_contact import RETOLD, is_late, split
 from sgcad_core.reading.contacts.rest_words import HANDS, last_place, leaves_road, rest_lane, side_named, spin_told
-from sgcad_core.reading.contacts.road_departure import DepartureReader
+from sgcad_core.reading.contacts.road_departure import DepartureReader, MoveHeard, wandering
 from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.language import Rule, of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
@@ -21,12 +22,11 @@ from sgcad_core.reading.motion.motion_reader import counts_from_median
 from sgcad_core.reading.motion.motion_record import ManeuverCue, Source
 from sgcad_core.reading.text.compass import COMPASS, WORDS
 from sgcad_core.reading.text.normalise import number
-from sgcad_core.reading.text.sentence_roles import HIT, Role
+from sgcad_core.reading.text.sentence_roles import Role
 from sgcad_core.records.course import CourseTold, Hand, ImpactTold, Steering
 from sgcad_core.units import METERS
 
 UNREAD: frozenset[Role] = frozenset({"codes", "factors", "towing", "injury", "restraint", "police", "health"})
-_RETOLD: frozenset[Role] = frozenset({"interview"})
 _FAR_M = (0.5, 300.0)
 """Distances from a contact to a rest that are believed."""
 _MOST_QUARTERS = 24
@@ -43,7 +43,10 @@ class _CourseReader:
     from_median: bool = False
     course: CourseTold = field(default_factory=CourseTold)
     sources: dict[str, Source] = field(default_factory=dict)
+    places: dict[str, int] = field(default_factory=dict)
     leaving: DepartureReader = field(default_factory=DepartureReader)
+    moves: list[tuple[MoveHeard, Source, int]] = field(default_factory=list)
+    """Each with its sentence and its place in it."""
 
     def add(self, name: str, value: Any, source: Source) -> None:
         """Take a fact of the course unless it is known."""
@@ -64,6 +67,8 @@ class CoursesRead:
 
     courses: dict[str, CourseTold] = field(default_factory=dict)
     sources: dict[str, Source] = field(default_factory=dict)
+    places: dict[str, int] = field(default_factory=dict)
+    """Where in its sentence each of several moves stands ("V1 moves.0")."""
 
 
 class ImpactRead(NamedTuple):
@@ -88,55 +93,35 @@ def courses_told(
     heard = {v: _CourseReader(from_median) for v in roster.ids}
     for vehicle, cue in (coded or {}).items():
         heard[vehicle].add("lost_control", True, cue.source)
-    for segment in sorted(segments, key=lambda s: s.role in _RETOLD):
+    words = event.source.words.lower() if event else ""
+    late = False
+    for segment in sorted(segments, key=lambda s: s.role in RETOLD):
         if segment.role in UNREAD:
             continue
         for vehicle in segment.subjects:
-            _read(heard[vehicle], segment, impact, event.source.words.lower() if event else "")
+            _read(heard[vehicle], segment, impact, words, late=late)
+        late = is_late(segment, impact, late)
     if event and event.kind == "rollover":
         heard[event.vehicle].add("rolls", True, event.source)
+    for one in heard.values():
+        _keep_moves(one)
     courses = {v: one.course for v, one in heard.items() if not one.course.empty}
     sources = {f"{v} {name}": source for v, one in heard.items() for name, source in one.sources.items()}
-    return CoursesRead(courses, sources)
+    places = {f"{v} {name}": at for v, one in heard.items() for name, at in one.places.items()}
+    return CoursesRead(courses, sources, places)
 
 
-def _read(one: _CourseReader, segment: Segment, impact: int, event: str) -> None:
-    before, behind = _split(segment, impact)
+def _read(one: _CourseReader, segment: Segment, impact: int, event: str, *, late: bool = False) -> None:
+    """Take what a segment tells. `late`: it stands behind the first contact in that sentence."""
+    before, behind = split(segment, impact)
     if event and segment.number == impact and (at := segment.text.lower().find(event)) >= 0:
         before, behind = segment.text[:at], segment.text
     _read_evasion(one, segment, before)
-    if segment.role not in _RETOLD and segment.number <= impact:
+    if segment.role not in RETOLD and segment.number <= impact and not (late and segment.number == impact):
         _read_departure(one, segment, before)
     if behind:
         _read_spin(one, segment, behind)
         _read_rest(one, segment, behind)
-
-
-def _split(segment: Segment, impact: int) -> tuple[str, str]:
-    """A segment's text before and behind the first contact."""
-    text = segment.text
-    later = rule("course_evasion.afterwards").search(text)
-    if text.startswith(("was made to", "was pushed", "was sent", "were made to")):
-        return "", text
-    rest = rule("course_rest.rest").search(text)
-    if later:
-        at = min(later.start(), rest.start() if rest else later.start())
-        return text[:at], text[at:]
-    hit = next((m for m in HIT.finditer(text) if not rule("motion_reader.no_hit").search(text[: m.start()])), None)
-    if segment.number == impact or (segment.role == "impact" and segment.number < impact):
-        return (text[: hit.start()], text[hit.start() :]) if hit else (text, "")
-    if segment.number < impact:
-        return (text[: rest.start()], text) if rest and segment.role == "rest" else (text, "")
-    if segment.role == "interview" or (segment.role == "avoidance" and _if_evading(text)):
-        return text[: hit.start()] if hit else text, text[rest.start() :] if rest else ""
-    if segment.role in ("rest",):
-        return "", text
-    return text[: hit.start()] if hit else _if_evading(text), text
-
-
-def _if_evading(text: str) -> str:
-    """A text behind the impact that retells an evasion before it; else ""."""
-    return text if rule("course_evasion.to_avoid").search(text) or rule("course_evasion.none").search(text) else ""
 
 
 # ------------------------------------------------------------------ before the contact
@@ -145,7 +130,7 @@ def _read_evasion(one: _CourseReader, segment: Segment, text: str) -> None:
     if none:
         one.add("no_evasion", True, Source(segment.number, none[0], "course_evasion.none"))
     lost = rule("meeting.lost").search(text)
-    if lost and segment.role not in _RETOLD:
+    if lost and segment.role not in RETOLD:
         one.add("lost_control", True, Source(segment.number, lost[0], "meeting.lost"))
     if turned := rule("course_rest.turned").search(text):
         one.add("lost_control", True, Source(segment.number, turned[0], "course_rest.turned"))
@@ -157,11 +142,21 @@ def _read_evasion(one: _CourseReader, segment: Segment, text: str) -> None:
 
 
 def _read_departure(one: _CourseReader, segment: Segment, text: str) -> None:
-    one.leaving.hear(text)
+    for move in one.leaving.hear(text):
+        one.moves.append((move, Source(segment.number, move.words, move.rule), segment.at + move.at))
     found = one.leaving.found
     one.course = replace(one.course, departs=found.side if found else None)
     if found and found.words in text:
         one.sources["departs"] = Source(segment.number, found.words, found.rule)
+
+
+def _keep_moves(one: _CourseReader) -> None:
+    """The moves on the way to the contact, where there are several; their sources are "moves.0" and so on."""
+    kept = wandering([move for move, *_ in one.moves])
+    one.course = replace(one.course, moves=tuple(move.move for move in kept))
+    for n, move in enumerate(kept):
+        source, at = next((source, at) for other, source, at in one.moves if other is move)
+        one.sources[f"moves.{n}"], one.places[f"moves.{n}"] = source, at
 
 
 def _done(text: str, wordings: Sequence[Rule]) -> list[tuple[Rule, re.Match[str]]]:
@@ -203,7 +198,7 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
             one.add_rest("against", m["thing"], Source(segment.number, m[0], "course_rest.against"))
         one.sources.setdefault("rest.at", Source(segment.number, clause[:20], "course_rest.rest"))
         _read_distance(one, segment, text)
-    if not known and segment.role not in _RETOLD:
+    if not known and segment.role not in RETOLD:
         _read_place(one, segment, text, clause)
         _read_lane(one, segment, clause)
 

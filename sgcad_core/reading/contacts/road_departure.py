@@ -1,19 +1,20 @@
 """Whether and on which side a vehicle leaves the road before its first contact, as its narrative tells it in order.
 
 Reads the texts of one vehicle before that contact. The last word counts: who comes back on the road has not left it.
-Knows no heading and no road.
+The moves on the way there are kept in their order. Knows no heading and no road.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
-from sgcad_core.reading.language import rule
+from sgcad_core.reading.language import Rule, rule
 from sgcad_core.reading.text.compass import WORDS
-from sgcad_core.records.course import DepartureSide, Hand
+from sgcad_core.records.course import DepartureSide, Hand, Move, MoveKind, Spin
 
 _HANDS: dict[str, Hand] = {"left": "left", "right": "right"}
 _LEANS: tuple[tuple[str, Hand], ...] = (
@@ -22,6 +23,7 @@ _LEANS: tuple[tuple[str, Hand], ...] = (
 """Rules of moves that end on one side of the road."""
 _SAYS_SIDE = 45
 """Characters behind the words of leaving in which their side may stand."""
+_UNSIDED = (None, "either")
 
 
 class Departure(NamedTuple):
@@ -32,6 +34,15 @@ class Departure(NamedTuple):
     rule: str
 
 
+class MoveHeard(NamedTuple):
+    """One move with its words, the rule that read it, and where in its text it stands."""
+
+    move: Move
+    words: str
+    rule: str
+    at: int
+
+
 @dataclass
 class DepartureReader:
     """What was heard so far of one vehicle."""
@@ -40,29 +51,70 @@ class DepartureReader:
     lean: Hand | None = None
     """To which side it moved last."""
 
-    def hear(self, text: str) -> None:
-        """Take the next text in order."""
-        for _, kind, m in sorted(_events(text), key=lambda event: event[0]):
-            if kind == "back":
-                self.found = self.lean = None
-            elif kind == "left_road":
-                side = _side(text, m) or (self.found.side if self.found else self.lean) or "either"
-                self.found = Departure(side, m[0], "departures.left_road")
-            else:
-                self.lean = _HANDS[kind]
+    def hear(self, text: str) -> list[MoveHeard]:
+        """Take the next text in order. Returns the moves that it tells."""
+        told: list[MoveHeard] = []
+        for at, kind, name, m in sorted(_events(text), key=lambda event: event[0]):
+            told.append(MoveHeard(Move(kind, self._taken(text, kind, name, m)), m[0].strip(), name, at))
+        return told
+
+    def _taken(self, text: str, kind: MoveKind, name: str, m: re.Match[str]) -> DepartureSide | Spin | None:
+        """The side of a move, which is then the last one known."""
+        if kind == "yaws":
+            return "counterclockwise" if (m["way"] or m["turns"]).lower().startswith("counter") else "clockwise"
+        if kind == "returns":
+            self.found = self.lean = None
+            return None
+        if kind == "departs":
+            side = _side(text, m) or (self.found.side if self.found else self.lean) or "either"
+            self.found = Departure(side, m[0], name)
+            return side
+        self.lean = dict(_LEANS).get(name) or _HANDS[m["hand"].lower()]
+        return self.lean
 
 
-def _events(text: str) -> Iterator[tuple[int, str, re.Match[str]]]:
-    """(place, what it is, match) of all that is told of leaving the road and coming back."""
-    for m in rule("departures.left_road").finditer(text):
-        yield m.start(), "left_road", m
-    for m in rule("course_rest.back_on_road").finditer(text):
-        yield m.start(), "back", m
-    for m in rule("departures.toward").finditer(text):
-        yield m.start(), m["hand"].lower(), m
-    for name, hand in _LEANS:
+def _events(text: str) -> Iterator[tuple[int, MoveKind, str, re.Match[str]]]:
+    """(place, what it is, rule, match) of all that is told of leaving the road and coming back."""
+    kinds: tuple[tuple[Rule, MoveKind], ...] = (
+        (rule("departures.left_road"), "departs"), (rule("course_rest.back_on_road"), "returns"),
+        (rule("departures.returns"), "returns"), (rule("departures.toward"), "steers"),
+        (rule("departures.yaws"), "yaws"),
+    )  # fmt: skip
+    for wording, kind in kinds:
+        for m in wording.finditer(text):
+            if kind != "returns" or not rule("departures.tried").search(text[: m.start()]):
+                yield m.start(), kind, wording.id, m
+    for name, _ in _LEANS:
         for m in rule(name).finditer(text):
-            yield m.start(), hand, m
+            yield m.start(), "crosses" if name == "deeds.crossing_centerline" else "steers", name, m
+
+
+def wandering(told: Sequence[MoveHeard]) -> list[MoveHeard]:
+    """The moves of a vehicle, each once, where they lead to more than one side in turn; else none."""
+    kept: list[MoveHeard] = []
+    for one in told:
+        last = next(
+            (other.move for other in reversed(kept) if (other.move.kind == "yaws") == (one.move.kind == "yaws")), None
+        )
+        if last is None or not _again(last, one.move):
+            kept.append(one)
+    ways = [way for one in kept if (way := _way(one.move))]
+    turns = sum(a != b and "either" not in (a, b) for a, b in pairwise(ways))
+    return kept if turns else []
+
+
+def _again(before: Move, move: Move) -> bool:
+    """Whether a move only says once more what the one before it told."""
+    return before.kind == move.kind and (before.side == move.side or move.side in _UNSIDED)
+
+
+def _way(move: Move) -> str | None:
+    """To which hand a move leads, "back" or "either"; a yaw leads nowhere."""
+    if move.kind == "yaws":
+        return None
+    if move.kind == "returns":
+        return "back"
+    return "left" if move.kind == "crosses" else move.side if move.side in _HANDS else "either"
 
 
 def _side(text: str, left: re.Match[str]) -> DepartureSide | None:

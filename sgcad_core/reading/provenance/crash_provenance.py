@@ -269,6 +269,8 @@ def _course_values(course: CourseTold) -> Iterator[tuple[str, Value, str]]:
     for name in _PLAIN:
         if value := getattr(course, name):
             yield name, value, name
+    for number, move in enumerate(course.moves):
+        yield f"moves.{number}", move.words, f"moves.{number}"
     for name in _REST:
         if (value := getattr(course.rest, name)) is not None:
             yield f"rest.{name}", value, f"rest.{name}"

@@ -25,9 +25,17 @@ _AS: dict[str, ActKind] = {
 }  # fmt: skip
 """Cues that are an act by another name; those without a name here or in `ActKind` are no acts."""
 _ONWARD = ("moved_on", "came_on")
+_MOVES: dict[tuple[str, str | None], ActKind] = {
+    ("departs", "left"): "departing_road_left", ("departs", "right"): "departing_road_right",
+    ("crosses", "left"): "crossing_centerline",
+}  # fmt: skip
+"""Moves that are an act of their own kind; the kinds of others are the same words."""
+_MOVED: frozenset[ActKind] = frozenset(_MOVES.values())
 _MEANT, _CODED = "want_", "code:"
 _LANE_WORDS = {-1: "leftmost", 1: "rightmost"}
 _NO_SENTENCE = 10**6
+_Placed = tuple[int, int, Act]
+"""Sentence, place in it, act."""
 
 
 def timeline_of(builder: FactBuilder, told: CrashTold, inferred: CrashInferred) -> tuple[Act, ...]:
@@ -36,12 +44,24 @@ def timeline_of(builder: FactBuilder, told: CrashTold, inferred: CrashInferred) 
     impact = min((hit.number for hit in hits), default=_NO_SENTENCE)
     found: list[tuple[int, int, int, Act]] = []
     for vehicle in told.roster.ids:
-        acts = [*_motion(builder, vehicle, told.motions[vehicle], inferred, impact)]
-        acts += _course(builder, vehicle, told)
+        motion = [*_motion(builder, vehicle, told.motions[vehicle], inferred, impact)]
+        acts = [*_with_moves(motion, [*_course(builder, vehicle, told)])]
         found += [(PHASES.index(act.phase), number, at, act) for number, at, act in acts]
     found += [(PHASES.index(act.phase), number, 0, act) for number, act in _contacts(builder, told, hits)]
     found.sort(key=lambda one: one[:3])
     return _each_once(act for *_, act in found)
+
+
+def _with_moves(motion: list[_Placed], course: list[_Placed]) -> Iterator[_Placed]:
+    """The acts of motion and of the course; what moves of the course tell is no act of motion as well."""
+    moves = {act.kind for *_, act in course} & _MOVED
+    deciding = {act.kind for *_, act in motion if act.decides} & moves
+    for number, at, act in motion:
+        if act.kind not in moves or act.phase != "before":
+            yield number, at, act
+    for number, at, act in course:
+        yield number, at, act.model_copy(update={"decides": True}) if act.kind in deciding else act
+        deciding -= {act.kind}
 
 
 def _each_once(acts: Iterator[Act]) -> tuple[Act, ...]:
@@ -169,14 +189,18 @@ def _course(builder: FactBuilder, vehicle: str, told: CrashTold) -> Iterator[tup
         fact = builder.stated("act", kind, source)
         number = source.number if source else _NO_SENTENCE
         last = _NO_SENTENCE if kind == "rests" else 0
-        yield max(number, last), 0, _act(fact, source, vehicle, kind, phase, value=value)
+        at = told.course.places.get(f"{vehicle} {name}", 0)
+        yield max(number, last), at, _act(fact, source, vehicle, kind, phase, value=value)
 
 
 def _course_acts(course: CourseTold) -> Iterator[tuple[str, ActKind, Phase, Any]]:
     """(name of the source, kind, phase, value) of what is told."""
     if course.brakes:
         yield "brakes", "brakes", "before", None
-    if course.steers:
+    for n, move in enumerate(course.moves):
+        kind = _MOVES.get((move.kind, move.side), move.kind)
+        yield f"moves.{n}", kind, "before", None if kind in _MOVED else move.side
+    if course.steers and not course.moves:
         yield "steers", "steers", "before", course.steers
     if course.no_evasion and not (course.brakes or course.steers):
         yield "no_evasion", "no_evasion", "before", None

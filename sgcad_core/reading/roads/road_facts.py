@@ -45,6 +45,7 @@ from sgcad_core.reading.roads.work_zones_openings import (
     median_opening,
     names_closure,
     names_gore,
+    with_entered_median,
 )
 from sgcad_core.reading.text.compass import AXIS_NAMES, COMPASS, turned
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
@@ -123,7 +124,8 @@ def roads_of(statements: tuple[Statement, ...], roster: Roster, crash: CrashFact
     headings = {v.id: v.heading for v in driven if v.heading}
     left_on = next((c.departs for c in crash.courses.values() if c.departs in ("left", "right")), None)
     limits, bends = speed_limits(statements, headings), curves(statements, headings, left_on)
-    gathered = merge_roads(mentions, headings) or [MergedRoad(None) for _ in limits[:1]]
+    merged = merge_roads(mentions, headings) or [MergedRoad(None) for _ in limits[:1]]
+    gathered = with_entered_median(merged, statements)
     approaches = approaches_of(statements)
     junction = junction_of(statements, driven, gathered, approaches)
     rural = rural_source(statements)
@@ -135,13 +137,11 @@ def roads_of(statements: tuple[Statement, ...], roster: Roster, crash: CrashFact
     walked = any(map(_CROSSWALK.search, story)) or (
         junction.kind != "none" and any(actor_kind(other.kind).walks for other in crash.others)
     )
-    urban = any(map(_URBAN.search, story))
     notes = _open_ends(roads, junction, crash)
     in_gore = in_gores(statements)
-    exits = any(map(_EXIT_RAMP.search, story)) or bool(in_gore)
-    leaves = exits and not any(map(_ENTRANCE_RAMP.search, story))
-    told_closed = closed_lanes(statements, driven)
-    closed = told_closed if told_closed and _closable(told_closed, junction, roads) else None
+    leaves = (any(map(_EXIT_RAMP.search, story)) or bool(in_gore)) and not any(map(_ENTRANCE_RAMP.search, story))
+    shut = closed_lanes(statements, driven)
+    closed = shut if shut and _closable(shut, junction, roads) else None
     opens = median_opening(statements)
     opening = opens if junction.kind == "none" and not closed else None
     gore = in_gore if junction.kind == RAMP else {}
@@ -155,7 +155,7 @@ def roads_of(statements: tuple[Statement, ...], roster: Roster, crash: CrashFact
     junction = replace(junction, unsupported=_undrawn(unsupported_places(statements), places))
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")
-    told_places = (merge_lane, beside, walked, urban, closed, opening, leaves)
+    told_places = (merge_lane, beside, walked, any(map(_URBAN.search, story)), closed, opening, leaves)
     return RoadFacts(roads, junction, crash, notes, *told_places, approaches)
 
 

@@ -1,4 +1,4 @@
-"""What a story tells of a road besides its junction: lanes that a work zone closes, openings in its median, gores.
+"""What a story tells of a road besides its junction: lanes that a work zone closes, its median, gores.
 
 Reads resolved sentences and the vehicles' facts. Knows no lane that is drawn and no file format.
 """
@@ -6,16 +6,18 @@ Reads resolved sentences and the vehicles' facts. Knows no lane that is drawn an
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from sgcad_core.kinds import JOINING
 from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.motion.motion_record import Source
+from sgcad_core.reading.roads.road_merge import MergedRoad
 from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
-from sgcad_core.records.specs import Compass
+from sgcad_core.records.specs import Compass, Median
 
 Side = Literal["left", "right"]
 InGore = Literal["stands", "strikes", "crosses", "leaves"]
@@ -65,6 +67,20 @@ def median_opening(statements: Sequence[Statement]) -> Source | None:
     """Where a story tells of an opening in the median."""
     found = ((t, match) for t in _story(statements) if (match := MEDIAN_OPENING.search(t.text)))
     return next((Source(t.number, match[0], MEDIAN_OPENING.id) for t, match in found), None)
+
+
+def with_entered_median(roads: list[MergedRoad], statements: Sequence[Statement]) -> list[MergedRoad]:
+    """The roads, of which the only street has the median that a vehicle is told to enter, if none is told of it."""
+    streets = [road for road in roads if road.kind not in JOINING]
+    found = ((t, m) for t in _story(statements) if (m := rule("median.entered").search(t.text)))
+    first = next(found, None)
+    if first is None or len(streets) != 1 or streets[0].lanes.median or streets[0].lanes.divided is not None:
+        return roads
+    told, match = first
+    kind: Median = "raised" if rule("median.hard").search(match[0]) else "grass"
+    where = {**streets[0].lanes.where, "median": Source(told.number, match[0], "median.entered")}
+    streets[0].lanes = replace(streets[0].lanes, median=kind, where=where)
+    return roads
 
 
 def in_gores(statements: Sequence[Statement]) -> dict[str, InGore]:

@@ -216,6 +216,20 @@ def test_a_whole_report_leaves_nothing_unread(made):
     assert [item for item in unread_items(made) if item.kind == "lacks"] == []
 
 
+@pytest.mark.parametrize(("text", "field", "value"), [
+    ("V2 was slowing for a school bus.", "text.further", "school bus"),
+    ("V1 swerved to avoid a stopped truck and struck V2.", "text.further", "stopped truck"),
+    ("V1 was northbound when it went into the ditch.", "text.ground", "ditch"),
+    ("V1 departed the road and came to rest in a driveway.", "text.ground", "driveway"),
+    ("The rollover was preceded by an impact to a fire hydrant.", "text.struck", "hydrant"),
+    ("V1 was northbound. V2 was southbound.", "text.ground", None),
+])  # fmt: skip
+def test_things_that_are_named_and_not_drawn_lack(made, text, field, value):
+    sentences = split_sentences(TracedText.of(text))
+    found = of(unread_items(replace(made, reading=replace(made.reading, sentences=sentences))), field)
+    assert (found.value if found else None) == value
+
+
 # ------------------------------------------------------------------ words
 @pytest.mark.parametrize(("field", "value", "words"), [
     ("vehicles.V2.start_speed_mph", 35, "V2 speed 35 mph"),

@@ -10,7 +10,15 @@ import pytest
 from sgcad_core.account.notes import Note
 from sgcad_core.account.records import Disagreement, Item
 from sgcad_core.account.unread_clauses import unread_clauses
-from sgcad_core.account.verdict import contradictions, guesses, odd_driving, places, sentence_of, verdict_of
+from sgcad_core.account.verdict import (
+    contradictions,
+    guesses,
+    odd_driving,
+    places,
+    sentence_of,
+    untold_swerves,
+    verdict_of,
+)
 from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.reading.reading import read
 from tests.sgcad_core.planner.crash_scenes import network
@@ -124,3 +132,19 @@ def test_a_field_of_which_two_things_are_told_contradicts_itself() -> None:
 ])  # fmt: skip
 def test_a_heading_that_nobody_tells_is_a_guess(text, guessed) -> None:
     assert [one.field for one in guesses(made(text))] == guessed
+
+
+# ------------------------------------------------------------------ swerves
+@pytest.mark.parametrize(("text", "counts"), [
+    ("V1 was northbound. V2 was southbound. The front of V1 struck the left side of V2.", 1),
+    ("V1 was northbound. V2 was southbound. V2 swerved to the left. The front of V1 struck the left side of V2.", 0),
+    ("V1 was northbound. V2 was southbound. V2 lost control. The front of V1 struck the left side of V2.", 0),
+])  # fmt: skip
+def test_a_swerve_that_nobody_tells_costs_the_verdict(text, counts) -> None:
+    note = Note(kind="plan", subject="V2", text="V2 steers aside before contact")
+    assert len(list(untold_swerves(made(text), [note]))) == counts
+
+
+def test_other_notes_are_no_swerves() -> None:
+    note = Note(kind="plan", subject="V2", text="V2 drives slower than stated")
+    assert not list(untold_swerves(made("V1 was northbound. V2 was southbound. V1 struck V2."), [note]))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from sgcad_core.planner import plan
+from sgcad_core.planner.lead_time import WAITS_S
 from sgcad_core.planner.motion import ACCELERATION_MPS2
-from sgcad_core.planner.plan import WAITS_S
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import BehaviorSpec
 from tests.sgcad_core.planner.crash_scenes import network

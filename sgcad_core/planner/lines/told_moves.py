@@ -1,0 +1,161 @@
+"""The told moves before a contact as one line: off the road and back, across the center line, in a yaw.
+
+Puts them before the last change of line, each as long as the speed asks. Knows one actor, its course and what is told
+of it; no other actor and no time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from sgcad_core.kinds import Maneuver
+from sgcad_core.planner.actor_plan import Drift, Role, Swing, usual_speed
+from sgcad_core.planner.lines.departures import departure_sides
+from sgcad_core.planner.motion import HARD_MPS2
+from sgcad_core.records.course import Move
+
+_PARTLY_M = 1.0
+"""Over the edge of the road: a vehicle that comes back on it."""
+_ASIDE_M = 1.5
+"""A swerve within the road."""
+_EASE, _LEAST_M = 1.15, 8.0
+"""Length of a swing over the shortest at that speed, and its least."""
+_YAW_RAD, _LAST_YAW_RAD = math.radians(18.0), math.radians(38.0)
+"""Angle of a yaw out of which a vehicle comes back, and of one in which it meets its end."""
+_BEFORE_PLACE_M = 2.0
+_BEHIND_M = 70.0
+"""Of its road behind the place."""
+_STILL_S, _LEAST_SHARE = 2.2, 0.6
+"""Time on its undisturbed line before the first move; least share of the lengths where the road is short: it then
+drives slower."""
+_WANDERS: frozenset[Maneuver] = frozenset({
+    "straight", "negotiating_curve", "slowing", "other", "overtaking", "crossing_centerline", "departing_road_left",
+    "departing_road_right", "lane_change_left", "lane_change_right",
+})  # fmt: skip
+"""Maneuvers of vehicles whose line the told moves may be: the others have lines of their own."""
+
+
+class _Target(NamedTuple):
+    """Where a move leads: metres to the left of the line of its lane, and the angle of the box against its line."""
+
+    left_m: float
+    yaw_rad: float
+
+
+def last_move(role: Role) -> Move | None:
+    """The move in which it meets its end; None where no several moves are told, or its maneuver has a line of its
+    own."""
+    if not role.told.moves or role.actor.maneuver not in _WANDERS:
+        return None
+    last = next(move for move in reversed(role.told.moves) if move.kind != "yaws")
+    return None if last.kind == "departs" and role.told.departs is None else last
+
+
+def with_earlier(role: Role, lines: Sequence[Drift]) -> Iterator[Drift]:
+    """Lines that end with the last move, with all earlier ones before it."""
+    *earlier, last = _targets(role)
+    for line in lines:
+        yield _prefixed(role, line, earlier, last.yaw_rad)
+
+
+def with_room(role: Role) -> Role:
+    """The role with its place so far along its road that all told moves have room before it."""
+    if last_move(role) is None:
+        return role
+    place, course = role.place.station_m, role.course
+    needed_m = sum(swing.length_m for swing in _swings(role, _targets(role), place, 1.0)) + _still_m(role)
+    further = min(course.first_m + needed_m, course.end_m - _BEHIND_M)
+    return replace(role, place=role.place._replace(station_m=max(place, further)))
+
+
+def _prefixed(role: Role, line: Drift, earlier: Sequence[_Target], yaw_rad: float) -> Drift:
+    """A line with moves before it, all of them shorter where its road has too little room before the place."""
+    gone, askew = earlier[-1] if earlier else _Target(0.0, 0.0)
+    own = line.left_m - gone
+    end_m = line.end_m if line.left_m else role.place.station_m - _BEFORE_PLACE_M
+    length = max(line.length_m, _length(role, own)) if line.left_m else _length(role, own)
+    needed_m = length + sum(swing.length_m for swing in _swings(role, earlier, 0.0, 1.0))
+    share = min(1.0, max((end_m - role.course.first_m - _still_m(role)) / needed_m, _LEAST_SHARE))
+    swings = _swings(role, earlier, end_m - share * length, share)
+    return line._replace(end_m=end_m, length_m=share * length, earlier=swings, yaw_rad=yaw_rad - askew)
+
+
+def _swings(role: Role, targets: Sequence[_Target], until_m: float, share: float) -> tuple[Swing, ...]:
+    """One swing to each target in turn, the last of which ends at a station; `share`: of their usual lengths."""
+    found: list[Swing] = []
+    for before, target in reversed(list(zip([_Target(0.0, 0.0), *targets], targets, strict=False))):
+        length = share * _length(role, target.left_m - before.left_m)
+        found.append(Swing(target.left_m - before.left_m, length, until_m, target.yaw_rad - before.yaw_rad))
+        until_m -= length
+    return tuple(reversed(found))
+
+
+def _still_m(role: Role) -> float:
+    """Way on its undisturbed line before the first move, metres."""
+    return _STILL_S * usual_speed(role)
+
+
+def _length(role: Role, left_m: float) -> float:
+    """The length of a swing at the usual speed, metres."""
+    return max(_EASE * usual_speed(role) * math.sqrt(5.77 * abs(left_m) / HARD_MPS2), 3.3 * abs(left_m), _LEAST_M)
+
+
+# ------------------------------------------------------------------ where the moves lead
+def _targets(role: Role) -> list[_Target]:
+    """Where each move leads; one that only begins the next one has no place of its own."""
+    found: list[_Target] = []
+    moves = [move for move in role.told.moves if move.kind != "yaws"]
+    yaws = _yaws(role.told.moves)
+    left_m = 0.0
+    for number, move in enumerate(moves):
+        following = moves[number + 1] if number + 1 < len(moves) else None
+        if following is not None and _begins(role, move, following, left_m):
+            continue
+        left_m = _place(role, move, left_m)
+        most = _YAW_RAD if following is not None else _LAST_YAW_RAD
+        found.append(_Target(left_m, most * yaws[number]))
+    return found
+
+
+def _yaws(moves: Sequence[Move]) -> list[int]:
+    """By move that is no yaw the sense in which it is driven: 1 counter-clockwise, -1 clockwise, 0 without a yaw."""
+    senses: list[int] = []
+    sense = 0
+    for move in moves:
+        if move.kind == "yaws":
+            sense = 1 if move.side == "counterclockwise" else -1
+            continue
+        senses.append(sense)
+        sense = 0
+    return [*senses[:-1], sense or senses[-1]]
+
+
+def _begins(role: Role, move: Move, following: Move, left_m: float) -> bool:
+    """Whether a move leads on into the next one: a swerve off the road or back to it, a crossed line on the way off."""
+    way, onward = _hand(role, move), _hand(role, following)
+    if move.kind == "steers":
+        return onward == way or (following.kind == "returns" and left_m * way < 0)
+    return move.kind == "crosses" and following.kind == "departs" and onward == way
+
+
+def _hand(role: Role, move: Move) -> int:
+    """To which hand a move leads: 1 left, -1 right, 0 back."""
+    if move.kind == "returns":
+        return 0
+    if move.kind == "crosses" or move.side in ("left", "right"):
+        return -1 if move.side == "right" else 1
+    return departure_sides(role.course, role.place.station_m, move.side or "either")[0]  # type: ignore[arg-type]
+
+
+def _place(role: Role, move: Move, left_m: float) -> float:
+    """Where a move ends, metres to the left of the line of its lane."""
+    course, way = role.course, _hand(role, move)
+    if move.kind == "departs":
+        return course.left_edge_m + _PARTLY_M if way > 0 else -(course.right_edge_m + _PARTLY_M)
+    if move.kind == "crosses":
+        return course.opposite_m
+    within = max(-course.right_edge_m, min(left_m, course.left_edge_m))
+    return within + way * _ASIDE_M if move.kind == "steers" else 0.0

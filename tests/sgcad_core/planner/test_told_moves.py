@@ -1,0 +1,68 @@
+"""Several told moves before a contact: driven one after the other, at any speed that the road has room for."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sgcad_core.metrics.labels.motion_label_match import Path
+from sgcad_core.metrics.labels.observed_crash import Crash, VehicleMotion
+from sgcad_core.metrics.road_departure import moves_made
+from sgcad_core.planner.plan import plan
+from sgcad_core.records.course import CourseTold, Move
+from sgcad_core.records.specs import size_m
+from tests.effort import many
+from tests.sgcad_core.planner.test_departures import ALONE, CAR, HITS_TREE, roads
+
+OFF_RIGHT, OFF_LEFT, BACK = Move("departs", "right"), Move("departs", "left"), Move("returns")
+ACROSS, YAWS = Move("crosses", "left"), Move("yaws", "counterclockwise")
+
+
+def made(behavior, told, graph=None):
+    graph = graph or roads()
+    done = plan(behavior, graph, courses={"V1": told}, may_skid=told.lost_control)
+    paths = {t.actor: Path(t.t_s, t.pose, size_m(a)) for t, a in zip(done.trajectories, behavior.actors, strict=True)}
+    seen = moves_made(graph, VehicleMotion(Crash(paths, graph), "V1"), told.moves, size_m(CAR)[0])
+    return done, seen
+
+
+@pytest.mark.parametrize(("moves", "side"), [
+    ((OFF_RIGHT, BACK, OFF_LEFT), "left"),
+    ((OFF_RIGHT, Move("steers", "left"), ACROSS, OFF_LEFT), "left"),
+    ((Move("steers", "left"), BACK, OFF_RIGHT), "right"),
+    ((ACROSS, BACK, OFF_RIGHT), "right"),
+    ((OFF_LEFT, BACK, OFF_RIGHT), "right"),
+])  # fmt: skip
+def test_every_told_move_is_driven_before_the_tree_is_struck(moves, side):
+    done, seen = made(HITS_TREE, CourseTold(departs=side, moves=moves))
+    assert done.realised
+    assert all(seen)
+
+
+def test_a_told_yaw_shows_on_the_way_off_the_road_where_nothing_is_struck():
+    told = CourseTold(departs="left", moves=(OFF_RIGHT, BACK, YAWS, OFF_LEFT), rolls=True, lost_control=True)
+    done, seen = made(ALONE, told)
+    assert all(seen)
+    assert done.trajectories[0].t_s[-1] > 8.0
+
+
+def test_a_move_that_is_not_driven_is_missed():
+    graph = roads()
+    done = plan(HITS_TREE, graph, courses={"V1": CourseTold(departs="left")})
+    paths = {t.actor: Path(t.t_s, t.pose, (4.6, 1.8)) for t in done.trajectories}
+    seen = moves_made(graph, VehicleMotion(Crash(paths, graph), "V1"), (OFF_RIGHT, BACK, OFF_LEFT), 4.6)
+    assert seen == [False, False, True]
+
+
+@settings(max_examples=many(4, 40), deadline=None)
+@given(speed=st.integers(20, 65))
+def test_moves_at_any_speed_begin_on_the_road(speed):
+    car = CAR.model_copy(update={"speed_mph": speed})
+    behavior = ALONE.model_copy(update={"actors": (car,)})
+    done, seen = made(behavior, CourseTold(departs="left", moves=(OFF_RIGHT, BACK, OFF_LEFT), rolls=True))
+    (track,) = done.trajectories
+    assert all(seen)
+    assert abs(float(track.y_m[0])) < 250
+    assert np.abs(np.diff(track.x_m)).max() < 1.0
