@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.actor_plan import (
     Drift,
     Role,
@@ -31,16 +32,14 @@ from sgcad_core.records.course import Move, Steering
 SWERVE_MPS2 = 6.0
 """Lateral acceleration that gives the length of a swerve; the speed follows from friction."""
 _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
-_NOT_EVADING = 0.3
-"""Cost of the own line where steering aside is stated."""
+_NOT_EVADING, _WITHOUT_MOVES = 0.3, 1.5
+"""Costs of the own line where steering aside is stated, and of a line without the moves that are told."""
 _EVADED_FROM = ("straight", "negotiating_curve", "slowing", "other")
 OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
 OTHER_LANE_COST = 1.0
 """More than another speed: a told lane is taken wherever the two can meet from it."""
 _SHARES = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
 """Shares of the shift of a maneuver with their costs."""
-_WITHOUT_MOVES = 1.5
-"""Cost of a line without the moves that are told."""
 _OTHER_SIDE, _STAYS_ON_ROAD = 0.25, 2.5
 """Costs of leaving the road on the unlikelier side, and of a told departure that is not driven."""
 _OFF_BEHIND_TURN_M = 16.0
@@ -186,8 +185,10 @@ def _maneuver_shift(role: Role) -> float | None:
 
 
 def _drift(role: Role, left_m: float, cost: float, ease: float, note: str = "") -> Drift:
-    """A drift as long as its lateral acceleration allows: ease 1 is a hard swerve, more is gentler."""
-    length = max(ease * usual_speed(role) * math.sqrt(5.77 * abs(left_m) / SWERVE_MPS2), 3.3 * abs(left_m), 4.0)
+    """A drift as long as its lateral acceleration allows: ease 1 is hard, more is gentler; longer on snow and ice."""
+    dry = max(ease * usual_speed(role) * math.sqrt(5.77 * abs(left_m) / SWERVE_MPS2), 3.3 * abs(left_m), 4.0)
+    room = role.place.station_m - role.course.first_m - usual_speed(role)
+    length = min(dry * math.sqrt(max(DRIVING.friction_mps2(None) / role.grip_mps2, 1.0)), max(room, dry))
     return Drift(cost, left_m, length, role.place.station_m, note=note)
 
 
@@ -208,8 +209,7 @@ def _other_lanes(role: Role) -> list[Drift]:
 
 
 def _swerves(role: Role) -> list[Drift]:
-    place = role.place
-    found = []
+    place, found = role.place, []
     if place.apart_m > 1.2 and abs(math.sin(place.angle_rad)) < 0.5 and abs(place.aside_m) < 16:
         for extra, cost in ((0.0, 0.3), (0.7, 0.33), (-0.7, 0.33), (1.4, 0.36), (-1.4, 0.36)):
             found.append(_drift(role, place.aside_m + extra, cost, 1.3, _LEAVES))
