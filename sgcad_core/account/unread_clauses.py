@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
+from sgcad_core.reading.junctions.junction import CIRCLE_LANES
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.reading import Reading
 from sgcad_core.reading.text.normalise import Sentence
@@ -84,7 +85,9 @@ def _unread(reading: Reading, sentence: Sentence, kind: str) -> Item:
 
 # ------------------------------------------------------------------ whether it was read
 def _lane(reading: Reading, sentence: Sentence, read: _Read) -> bool:
-    return sentence.start > read.first_contact or read.has(sentence.start, "lane", "approaches", "one_way", "divided")
+    around = reading.roads.junction.circle_lanes is not None and CIRCLE_LANES.search(sentence.text)
+    heard = read.has(sentence.start, "lane", "approaches", "one_way", "divided")
+    return sentence.start > read.first_contact or heard or bool(around)
 
 
 def _side(reading: Reading, sentence: Sentence, read: _Read) -> bool:

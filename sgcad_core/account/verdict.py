@@ -12,7 +12,7 @@ from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.notes import Note
 from sgcad_core.account.records import Disagreement, Item, Kind, Verdict
 from sgcad_core.account.words import phrase
-from sgcad_core.kinds import ALLEY, DRIVEWAY
+from sgcad_core.kinds import ALLEY, DRIVEWAY, Maneuver
 from sgcad_core.metrics.untold_places import untold_places
 from sgcad_core.planner.encounter.maneuver_choices import UNTOLD
 from sgcad_core.reading.crash_facts import VehicleFacts
@@ -29,6 +29,8 @@ _ODD = ("[meeting]", "[drivable]")
 _BESIDE = "text.motion"
 """On 278 development reports those with such a sentence were right as often as the others (.68 against .56)."""
 _SHOWN = 3
+_STRAIGHT_ON: tuple[Maneuver, ...] = ("straight", "slowing", "negotiating_curve", "other")
+"""Maneuvers to which no steering belongs."""
 
 
 def verdict_of(items: Sequence[Item], differing: Sequence[Disagreement]) -> Verdict:
@@ -76,7 +78,9 @@ def untold_swerves(made: ExecutedCase, notes: Sequence[Note]) -> Iterator[Item]:
     for note in notes:
         words = next((words for words in UNTOLD if note.text == f"{note.subject} {words}"), None)
         told = made.reading.crash.driven.get(note.subject, CourseTold())
-        leaves = told.steers or told.lost_control or told.departs or told.moves
+        vehicle = made.reading.crash.vehicle(note.subject)
+        aside = vehicle is not None and vehicle.maneuver not in _STRAIGHT_ON
+        leaves = aside or told.steers or told.lost_control or told.departs or told.moves
         if note.kind == "plan" and words and not leaves and made.reading.crash.near_crash is None:
             yield Item(
                 kind="lacks", field=f"vehicles.{note.subject}.driving", subject=note.subject, value=None,

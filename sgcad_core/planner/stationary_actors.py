@@ -11,7 +11,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, Twist, facing
-from sgcad_core.planner.encounter.maneuver_choices import ASKEW, aiming
+from sgcad_core.planner.lines.box_angles import ASKEW, aiming
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import Motion
 

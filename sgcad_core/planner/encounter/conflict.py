@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.planner.actor_plan import Role, is_standing, speed_there
+from sgcad_core.planner.encounter.maneuver_choices import UNTOLD
 from sgcad_core.planner.encounter.meeting_place import TURNING, Place, meeting_places, preferred_station
 from sgcad_core.planner.encounter.motion_options import (
     Option,
@@ -22,7 +23,7 @@ from sgcad_core.planner.encounter.motion_options import (
     steeply,
     turned,
 )
-from sgcad_core.planner.encounter.pairing import Encounter, Ways, cannot, search
+from sgcad_core.planner.encounter.pairing import Encounter, Stage, Ways, cannot, search
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.departures import departs, departure_station, side_of
@@ -33,6 +34,8 @@ from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact, size_m
 
 _TRIES = (16, 26, 24, 400)
 """Combinations of options tried in each stage of the search."""
+_AS_TOLD, _TOLD_ENOUGH = 170, 1.0
+"""Combinations tried without a swerve, and the cost from which on one is looked for."""
 _LAST_TRIES = 90
 """Combinations tried with boxes that slide against their direction, since no driving brings the sides together."""
 _ONE_TURNS = 24
@@ -63,9 +66,9 @@ class Conflicts:
         None where their ways never meet so: no lane is left for a conflict that is avoided.
         """
         a, b = self._roles(conflict)
-        ordinary = [((self._options(a, b, _unturned), self._options(b, a, _unturned)), _TRIES[0])]
+        ordinary = [Stage((self._options(a, b, _unturned), self._options(b, a, _unturned)), _TRIES[0])]
         sides = (conflict.striker_area, conflict.struck_area)
-        turns = [((self._options(a, b, turned), self._options(b, a, turned)), _TURNING)]
+        turns = [Stage((self._options(a, b, turned), self._options(b, a, turned)), _TURNING)]
         found = search(ordinary, sides) or search(ordinary, None) or search([*ordinary, *turns], None)
         if found is None:
             self.notes.append(f"the ways of {conflict.striker} and {conflict.struck} never meet in ordinary driving")
@@ -87,31 +90,34 @@ class Conflicts:
         a, b = pair
         found = search(self._stages(a, b), wanted)
         if found is None and self.by_force:
-            found = search([((self._options(a, b, slid), self._options(b, a, slid)), _LAST_TRIES)], wanted)
+            found = search([Stage((self._options(a, b, slid), self._options(b, a, slid)), _LAST_TRIES)], wanted)
         if found is None:
-            found = search([((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])], None)
+            found = search([Stage((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])], None)
             self.notes.append(cannot(contact, found))
         return found
 
-    def _stages(self, a: Role, b: Role) -> Iterator[tuple[Ways, int]]:
-        """Ordinary driving, other lines of turns, the wanted sides turned to each other, one of the two, odd
-        driving."""
+    def _stages(self, a: Role, b: Role) -> Iterator[Stage]:
+        """Driving as told at any speed and in any lane, then with slight steering, other lines of turns, the wanted
+        sides turned to each other, one of the two, odd driving."""
+
+        def both(ways: Callable[[Role], list[Option]]) -> Ways:
+            return self._options(a, b, ways), self._options(b, a, ways)
+
+        yield Stage(both(_as_told), _AS_TOLD, _TOLD_ENOUGH)
         if implied_crossings(a) or implied_crossings(b):
-            yield (self._options(a, b, _unturned), self._options(b, a, _unturned)), _TRIES[0]
-            plain = self._options(a, b, plainly), self._options(b, a, plainly)
-            yield (self._options(a, b, steeply), plain[1]), _TRIES[0]
-            yield (plain[0], self._options(b, a, steeply)), _TRIES[0]
-        yield (self._options(a, b, options), self._options(b, a, options)), _TRIES[0]
+            steep, plain = both(steeply), both(plainly)
+            yield Stage((steep[0], plain[1]), _TRIES[0])
+            yield Stage((plain[0], steep[1]), _TRIES[0])
+        yield Stage(both(options), _TRIES[0])
         if a.actor.maneuver in TURNING or b.actor.maneuver in TURNING:
-            yield (self._options(a, b, turned), self._options(b, a, turned)), _TURNING
-        facing = self._options(a, b, aimed), self._options(b, a, aimed)
-        yield facing, _TRIES[1]
-        plain = self._options(a, b, plainly), self._options(b, a, plainly)
-        yield (plain[0], facing[1]), _ONE_TURNS
-        yield (facing[0], plain[1]), _ONE_TURNS
-        yield (self._options(a, b, forced), self._options(b, a, forced)), _TRIES[2]
+            yield Stage(both(turned), _TURNING)
+        facing, plain = both(aimed), both(plainly)
+        yield Stage(facing, _TRIES[1])
+        yield Stage((plain[0], facing[1]), _ONE_TURNS)
+        yield Stage((facing[0], plain[1]), _ONE_TURNS)
+        yield Stage(both(forced), _TRIES[2])
         if self.by_force:
-            yield (self._options(a, b, spun), self._options(b, a, spun)), _TRIES[3]
+            yield Stage(both(spun), _TRIES[3])
 
     def _roles(self, contact: Contact) -> tuple[Role, Role]:
         a, b = self.actors[contact.striker], self.actors[contact.struck]
@@ -183,6 +189,13 @@ def _unturned(role: Role) -> list[Option]:
     if is_standing(role):
         return options(role)
     return [option for option in options(role) if not option.twist.angle_rad and not option.drift.note]
+
+
+def _as_told(role: Role) -> list[Option]:
+    """The options in which it neither swerves nor skids, unless that is told."""
+    if is_standing(role):
+        return options(role)
+    return [option for option in options(role) if not option.twist.angle_rad and option.drift.note not in UNTOLD]
 
 
 def _facing_other(role: Role, other: Role) -> Role:

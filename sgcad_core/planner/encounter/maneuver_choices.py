@@ -9,20 +9,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
+from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.actor_plan import (
     Drift,
     Role,
-    Twist,
     along_with,
     is_beside,
-    is_standing,
-    mismatch,
     usual_speed,
 )
 from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.encounter.out_of_lanes import is_out
 from sgcad_core.planner.encounter.pacing_choices import from_another_road
-from sgcad_core.planner.lines.axle_to_box import tightest
+from sgcad_core.planner.lines.box_angles import SKIDS, STEERS
 from sgcad_core.planner.lines.crossing import LEAVES, crossings, end_meets_flank
 from sgcad_core.planner.lines.departures import DEPARTURES, aside_m, departs, departure_sides
 from sgcad_core.planner.lines.told_moves import last_move, with_earlier
@@ -32,29 +30,23 @@ from sgcad_core.records.course import Move, Steering
 SWERVE_MPS2 = 6.0
 """Lateral acceleration that gives the length of a swerve; the speed follows from friction."""
 _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
-_NOT_EVADING = 0.3
-"""Cost of the own line where steering aside is stated."""
+_NOT_EVADING, _WITHOUT_MOVES = 0.3, 1.5
+"""Costs of the own line where steering aside is stated, and of a line without the moves that are told."""
 _EVADED_FROM = ("straight", "negotiating_curve", "slowing", "other")
 OTHER_LANE, FROM_OTHER_LANE = "takes another lane than stated", "starts from another lane"
 OTHER_LANE_COST = 1.0
 """More than another speed: a told lane is taken wherever the two can meet from it."""
 _SHARES = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
 """Shares of the shift of a maneuver with their costs."""
-_WITHOUT_MOVES = 1.5
-"""Cost of a line without the moves that are told."""
 _OTHER_SIDE, _STAYS_ON_ROAD = 0.25, 2.5
 """Costs of leaving the road on the unlikelier side, and of a told departure that is not driven."""
 _OFF_BEHIND_TURN_M = 16.0
 """Length of the way off the road of a vehicle that turns first."""
-ASKEW, _STEERS = "stands askew", "steers aside before contact"
-_SWERVES, _OFF_COURSE, _SKIDS = "swerves", "leaves its course", "skids before contact"
-UNTOLD = (_STEERS, _SWERVES, _OFF_COURSE, _SKIDS)
+_SWERVES, _OFF_COURSE = "swerves", "leaves its course"
+UNTOLD = (STEERS, LEAVES, _SWERVES, _OFF_COURSE, SKIDS)
 """Notes on driving that a report does not tell unless it tells a swerve or a skid."""
-SLIDES = "slides into the contact at an angle that no steering explains"
 _GENTLE = 0.2
 """Cost of a gentle change of line where a steep one is needed."""
-_SLIDING = 2.0
-"""Cost of a slide: more than any steering."""
 
 
 def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
@@ -204,8 +196,10 @@ def _maneuver_shift(role: Role) -> float | None:
 
 
 def _drift(role: Role, left_m: float, cost: float, ease: float, note: str = "") -> Drift:
-    """A drift as long as its lateral acceleration allows: ease 1 is a hard swerve, more is gentler."""
-    length = max(ease * usual_speed(role) * math.sqrt(5.77 * abs(left_m) / SWERVE_MPS2), 3.3 * abs(left_m), 4.0)
+    """A drift as long as its lateral acceleration allows: ease 1 is hard, more is gentler; longer on snow and ice."""
+    dry = max(ease * usual_speed(role) * math.sqrt(5.77 * abs(left_m) / SWERVE_MPS2), 3.3 * abs(left_m), 4.0)
+    room = role.place.station_m - role.course.first_m - usual_speed(role)
+    length = min(dry * math.sqrt(max(DRIVING.friction_mps2(None) / role.grip_mps2, 1.0)), max(room, dry))
     return Drift(cost, left_m, length, role.place.station_m, note=note)
 
 
@@ -226,8 +220,7 @@ def _other_lanes(role: Role) -> list[Drift]:
 
 
 def _swerves(role: Role) -> list[Drift]:
-    place = role.place
-    found = []
+    place, found = role.place, []
     if place.apart_m > 1.2 and abs(math.sin(place.angle_rad)) < 0.5 and abs(place.aside_m) < 16:
         for extra, cost in ((0.0, 0.3), (0.7, 0.33), (-0.7, 0.33), (1.4, 0.36), (-1.4, 0.36)):
             found.append(_drift(role, place.aside_m + extra, cost, 1.3, LEAVES))
@@ -256,57 +249,6 @@ def _from_beside(role: Role) -> list[Drift]:
 def lines_to(role: Role, lefts_m: Sequence[float]) -> list[Drift]:
     """Lines that leave the own one by some distances to the left, the nearest first."""
     return [_drift(role, left, abs(left) / 10, 1.3, LEAVES) for left in sorted(lefts_m, key=abs)]
-
-
-def aiming(role: Role) -> list[Twist]:
-    """Angles by which the box turns its wanted side to the approaching actor; none where it already faces there."""
-    off = mismatch(role)
-    if abs(off) < math.radians(30):
-        return []
-    angles = [off - math.copysign(math.radians(k), off) for k in (45, 25, 0)]
-    return [twist for a in angles for twist in _turned(role, a, 0.5 + abs(a) / 1.6 + _unlike(role, a))]
-
-
-def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
-    """The ways to reach an angle: standing, by steering, and in a skid where the report states one."""
-    if is_standing(role):
-        return [Twist(cost, angle_rad, ASKEW)]
-    found = [Twist(cost, angle_rad, _STEERS)]
-    if abs(role.place.aside_m) < 16:
-        found.append(Twist(cost + 0.05, angle_rad, _STEERS, through=True))
-        reach = 1 - math.cos(angle_rad)
-        if abs(role.place.aside_m) > 1.0 and role.place.aside_m * angle_rad > 0 and reach > 0.02:
-            radius = max(abs(role.place.aside_m) / reach, 1.2 / tightest(role.size[0]))
-            found.append(Twist(cost + 0.02, angle_rad, _STEERS, radius_m=radius))
-    if role.may_skid:
-        found.append(Twist(cost + 0.1, angle_rad, _SKIDS, skids=True))
-    return found
-
-
-def _unlike(role: Role, angle_rad: float) -> float:
-    """Cost of a straight maneuver that is visibly turned (by more than 28 degrees), so that the other actor turns
-    instead."""
-    return 0.4 if role.actor.maneuver == "straight" and abs(angle_rad) > math.radians(28) else 0.0
-
-
-def skids(role: Role) -> list[Twist]:
-    """Straight on, slight steering, and the angles that bring the wanted side about."""
-    small = [t for a in (12, -12, 26, -26) for t in _turned(role, math.radians(a), abs(a) / 60)]
-    return [Twist(0.0), *small, *aiming(role)]
-
-
-def spins(role: Role) -> list[Twist]:
-    """Any angle, in steps of 45 degrees, and small ones."""
-    angles = [math.radians(a) for a in (24, -24, 45, -45, 90, -90, 135, -135, 180)]
-    return [Twist(0.0), *(t for a in angles for t in _turned(role, a, abs(a) + _unlike(role, a)))]
-
-
-def slides(role: Role) -> list[Twist]:
-    """The box at any angle to its direction without a stated loss of control: dearer than all driving."""
-    angles = [math.radians(a) for a in (24, -24, 45, -45, 90, -90, 135, -135, 180)]
-    off = mismatch(role)
-    facing_it = [Twist(_SLIDING, off, SLIDES, skids=True)] if abs(off) > math.radians(15) else []
-    return [Twist(0.0), *facing_it, *(Twist(_SLIDING + abs(a), a, SLIDES, skids=True) for a in angles)]
 
 
 def homing(role: Role) -> list[Drift]:

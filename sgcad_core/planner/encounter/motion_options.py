@@ -27,22 +27,13 @@ from sgcad_core.planner.actor_plan import (
     starts_at_m,
     usual_speed,
 )
-from sgcad_core.planner.encounter.maneuver_choices import (
-    FROM_OTHER_LANE,
-    OTHER_LANE,
-    OTHER_LANE_COST,
-    aiming,
-    drifts,
-    homing,
-    skids,
-    slides,
-    spins,
-)
+from sgcad_core.planner.encounter.maneuver_choices import FROM_OTHER_LANE, OTHER_LANE, OTHER_LANE_COST, drifts, homing
 from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.encounter.out_of_lanes import OUT, out_of_lanes, stands_out_of_lanes, starts_beside
 from sgcad_core.planner.encounter.pacing_choices import pacings
 from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, cost_outside, in_junction, misfit, waiting_zone
 from sgcad_core.planner.lines.axle_to_box import bent_before, box_path, easiest, offset, skidding, tightest
+from sgcad_core.planner.lines.box_angles import aiming, skids, slides, spins
 from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.path import Path, ramp, widened_bends
 from sgcad_core.planner.lines.turning import corner_lines

@@ -35,20 +35,28 @@ class Encounter(NamedTuple):
 
 
 Ways = tuple[Sequence[Option], Sequence[Option]]
+
+
+class Stage(NamedTuple):
+    """Both actors' options, how many of their combinations are tried, and the total cost below which that is the last
+    stage."""
+
+    ways: Ways
+    most: int
+    enough: float = _GOOD
+
+
 Known = dict[tuple[Option, Option], Meeting | None]
 """Meetings of the combinations tried so far: later stages contain many of them again."""
 
 
-def search(stages: Iterable[tuple[Ways, int]], wanted: tuple[Area, Area] | None) -> Encounter | None:
-    """The least odd encounter on the wanted sides; later stages are tried while there is no good one.
-
-    A stage is both actors' options and how many of their combinations are tried.
-    """
+def search(stages: Iterable[Stage], wanted: tuple[Area, Area] | None) -> Encounter | None:
+    """The least odd encounter on the wanted sides; later stages are tried while there is no good one."""
     best: Encounter | None = None
     known: Known = {}
-    for (first, second), most in stages:
-        best = _best(_pairs(first, second, most), wanted, best, known)
-        if best is not None and best.cost < _GOOD:
+    for stage in stages:
+        best = _best(_pairs(*stage.ways, stage.most), wanted, best, known)
+        if best is not None and best.cost < stage.enough:
             break
     return best
 

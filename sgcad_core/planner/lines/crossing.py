@@ -13,12 +13,12 @@ import math
 from sgcad_core.planner.actor_plan import Drift, Role, is_beside, is_standing
 from sgcad_core.planner.encounter.meeting_place import TURNING
 
-LEAVES = "leaves its lane"
+LEAVES, IMPLIED = "leaves its lane", "leaves its lane, as the told lanes and sides imply"
 _STEEP_SIN, _STEEP_RUN, _STEEP_AT = 0.47, 2.8, 0.4
 """Sine of an angle at which a corner clearly touches a flank (28 degrees); length over width of the change of line that
 reaches it, and the share of that length after which it does."""
 _LEAST_ROOM_M = 0.5
-_IMPLIED, _INTO_ONCOMING = 0.35, 0.6
+_ALONG, _INTO_ONCOMING = 0.35, 0.6
 """Costs of a change of line that nobody tells and that the told lanes and sides imply, and of one that leads into
 oncoming traffic: that is odd driving."""
 
@@ -28,8 +28,8 @@ def implied_crossings(role: Role) -> list[Drift]:
     aside = role.place.aside_m
     if not end_meets_flank(role) or abs(aside) < 1.0 or is_standing(role) or role.actor.maneuver in TURNING:
         return []
-    more = _IMPLIED if math.cos(role.place.angle_rad) > 0 else _INTO_ONCOMING
-    return [d._replace(note=LEAVES) for d in crossings(role, math.copysign(1.0, aside), more)]
+    more, note = (_ALONG, IMPLIED) if math.cos(role.place.angle_rad) > 0 else (_INTO_ONCOMING, LEAVES)
+    return [d._replace(note=note) for d in crossings(role, math.copysign(1.0, aside), more)]
 
 
 def end_meets_flank(role: Role) -> bool:

@@ -31,5 +31,5 @@ def _course_of(graph: LaneGraph, actor: Actor, gentle: float) -> Course:
         return out_of_stall(course, size_m(actor)[0])
     if actor.maneuver == "backing" and actor.exit_road in (None, actor.road):
         return course.reversed()
-    keeps_right = actor.record.keeps_right and actor.lane is None and actor.maneuver not in ("turn_left", "u_turn")
+    keeps_right = actor.record.keeps_right and actor.lane in (None, 1) and actor.maneuver not in ("turn_left", "u_turn")
     return at_the_edge(course) if keeps_right else course

@@ -24,11 +24,7 @@ QUICK = (
     "wrong_way_leg",
 )
 OPEN = {
-    "cyclist_right_hook": "the planner puts the car into another lane than the cyclist's",
     "guardrail": "a told speed is not reached on ice",
-    "opposite_sideswipe": "a told speed is not reached on snow",
-    "roundabout_entry": "the planner finds no ordinary way into the side of a vehicle that enters a roundabout",
-    "truck_turns_right": "the planner finds no ordinary turn across the lane beside",
 }
 """Right answers that the chain does not take yet."""
 

@@ -13,7 +13,7 @@ from sgcad_core.geometry.plane import Box, box_gaps, contact_area
 from sgcad_core.kinds import learned_actors
 from sgcad_core.metrics.drivability import deepest_overlap, driving_peaks, first_touches
 from sgcad_core.planner import Plan, plan
-from sgcad_core.planner.encounter.maneuver_choices import SLIDES
+from sgcad_core.planner.lines.box_angles import SLIDES
 from sgcad_core.planner.motion import LEAD_S
 from sgcad_core.planner.scene import AFTER_S
 from sgcad_core.records.specs import ActorKind, Area, BehaviorSpec, Maneuver, size_m

@@ -11,7 +11,7 @@ from sgcad_core.case.records import Trajectory
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.planner import Plan, plan
-from sgcad_core.planner.encounter.maneuver_choices import SLIDES
+from sgcad_core.planner.lines.box_angles import SLIDES
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
 from tests.sgcad_core.planner.crash_scenes import network
 

@@ -1,0 +1,67 @@
+"""Angles by which a box is turned before a contact: standing askew, steered aside, skidding or sliding.
+
+Costs as in `sgcad_core.planner.encounter.maneuver_choices`. Knows one actor.
+"""
+
+from __future__ import annotations
+
+import math
+
+from sgcad_core.planner.actor_plan import Role, Twist, is_standing, mismatch
+from sgcad_core.planner.lines.axle_to_box import tightest
+
+ASKEW, STEERS, SKIDS = "stands askew", "steers aside before contact", "skids before contact"
+SLIDES = "slides into the contact at an angle that no steering explains"
+_SLIDING = 2.0
+"""Cost of a slide: more than any steering."""
+
+
+def aiming(role: Role) -> list[Twist]:
+    """Angles by which the box turns its wanted side to the approaching actor; none where it already faces there."""
+    off = mismatch(role)
+    if abs(off) < math.radians(30):
+        return []
+    angles = [off - math.copysign(math.radians(k), off) for k in (45, 25, 0)]
+    return [twist for a in angles for twist in _turned(role, a, 0.5 + abs(a) / 1.6 + _unlike(role, a))]
+
+
+def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
+    """The ways to reach an angle: standing, by steering, and in a skid where the report states one."""
+    if is_standing(role):
+        return [Twist(cost, angle_rad, ASKEW)]
+    found = [Twist(cost, angle_rad, STEERS)]
+    if abs(role.place.aside_m) < 16:
+        found.append(Twist(cost + 0.05, angle_rad, STEERS, through=True))
+        reach = 1 - math.cos(angle_rad)
+        if abs(role.place.aside_m) > 1.0 and role.place.aside_m * angle_rad > 0 and reach > 0.02:
+            radius = max(abs(role.place.aside_m) / reach, 1.2 / tightest(role.size[0]))
+            found.append(Twist(cost + 0.02, angle_rad, STEERS, radius_m=radius))
+    if role.may_skid:
+        found.append(Twist(cost + 0.1, angle_rad, SKIDS, skids=True))
+    return found
+
+
+def _unlike(role: Role, angle_rad: float) -> float:
+    """Cost of a straight maneuver that is visibly turned (by more than 28 degrees), so that the other actor turns
+    instead."""
+    return 0.4 if role.actor.maneuver == "straight" and abs(angle_rad) > math.radians(28) else 0.0
+
+
+def skids(role: Role) -> list[Twist]:
+    """Straight on, slight steering, and the angles that bring the wanted side about."""
+    small = [t for a in (12, -12, 26, -26) for t in _turned(role, math.radians(a), abs(a) / 60)]
+    return [Twist(0.0), *small, *aiming(role)]
+
+
+def spins(role: Role) -> list[Twist]:
+    """Any angle, in steps of 45 degrees, and small ones."""
+    angles = [math.radians(a) for a in (24, -24, 45, -45, 90, -90, 135, -135, 180)]
+    return [Twist(0.0), *(t for a in angles for t in _turned(role, a, abs(a) + _unlike(role, a)))]
+
+
+def slides(role: Role) -> list[Twist]:
+    """The box at any angle to its direction without a stated loss of control: dearer than all driving."""
+    angles = [math.radians(a) for a in (24, -24, 45, -45, 90, -90, 135, -135, 180)]
+    off = mismatch(role)
+    facing_it = [Twist(_SLIDING, off, SLIDES, skids=True)] if abs(off) > math.radians(15) else []
+    return [Twist(0.0), *facing_it, *(Twist(_SLIDING + abs(a), a, SLIDES, skids=True) for a in angles)]
