@@ -194,6 +194,11 @@ class Simulator(Plugin):
 
     kind = "simulator"
 
+    @property
+    def drives_traffic(self) -> bool:
+        """Whether it has drivers of its own, for `drive_traffic`."""
+        return type(self).drive_traffic is not Simulator.drive_traffic
+
     def ready(self) -> None:
         """Called before a batch starts. Raises MissingTool where a program lacks; the default needs none."""
         return

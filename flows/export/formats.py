@@ -32,7 +32,9 @@ def _ego(case: FinishedCase, place: Path, wish: Wish) -> list[Path]:
     folder = place / ego
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "road.xodr").write_text(case.xodr, encoding="utf-8")
-    return write_ego_files(folder, case.script, ego, case.source, case.behavior, case.xodr, wish.version)
+    return write_ego_files(
+        folder, case.script, ego, case.source, case.behavior, case.xodr, wish.version, case.background
+    )
 
 
 def _commonroad(case: FinishedCase, place: Path, wish: Wish) -> list[Path]:

@@ -18,7 +18,7 @@ DENSITIES: tuple[Density, ...] = get_args(Density)
 PER_KM: Mapping[Density, float] = {"light": 5.0, "dense": 20.0}
 """Vehicles per kilometre and lane: 8 and 32 per mile, inside levels of service A (up to 11) and D (26 to 35) of the
 Highway Capacity Manual, whose levels of freeways and multilane highways go by density (6th edition, exhibit 12-15)."""
-NO_TRAFFIC = "none"
+NO_TRAFFIC: Literal["none"] = "none"
 ROLE = "traffic"
 """What the column `role` of trajectories.csv, properties of entities and pages call a background vehicle."""
 
@@ -75,6 +75,10 @@ class Driven(NamedTuple):
     poses: Floats
 
 
+Background = tuple[tuple[ActorInfo, Trajectory], ...]
+"""Vehicles of the traffic with their motions."""
+
+
 class Traffic(Record):
     """The traffic around a crash; trajectories on the crash's clock, in the order of the vehicles."""
 
@@ -91,6 +95,11 @@ class Traffic(Record):
     removed: Mapping[str, int] = {}
     """Vehicles that were left out, by reason."""
     notes: tuple[str, ...] = ()
+
+    @property
+    def background(self) -> Background:
+        """The vehicles with their motions."""
+        return tuple(zip(self.vehicles, self.trajectories, strict=True))
 
     def summary(self) -> dict[str, Any]:
         """For result.json."""

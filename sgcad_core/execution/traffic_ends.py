@@ -62,7 +62,8 @@ def _places(ends: Mapping[str, tuple[Hashable, int]]) -> dict[str, int]:
 def _on(pose: Floats, rows: int, place_m: float, sign: float) -> Floats:
     """(rows, 4) poses from one on, straight; it comes to a stand at the place. `sign`: -1 goes backwards."""
     x, y, heading, speed = (float(v) for v in pose)
-    along, speeds = _braking(speed, max(place_m, 0.0), np.arange(1, rows + 1) * STEP_S)
+    t_s = np.arange(1, rows + 1, dtype=np.float64) * STEP_S
+    along, speeds = _braking(speed, max(place_m, 0.0), t_s)
     way = sign * along
     same = np.full(rows, heading)
     return np.column_stack((x + way * np.cos(heading), y + way * np.sin(heading), same, speeds))

@@ -49,9 +49,7 @@ def shown_to_traffic(graph: LaneGraph, xosc: str | None, movers: Sequence[Mover]
 def _planned(graph: LaneGraph, name: str, lights: Lights, rows: int) -> tuple[str, ...]:
     links = {c.link: c for c in graph.connections if c.light == name}
     width = len(graph.programs[name].phases[0].states)
-    return tuple(
-        "".join(_letter(links.get(place), lights, k * STEP_S) for place in range(width)) for k in range(rows)
-    )
+    return tuple("".join(_letter(links.get(place), lights, k * STEP_S) for place in range(width)) for k in range(rows))
 
 
 def _letter(link: Connection | None, lights: Lights, t_s: float) -> str:

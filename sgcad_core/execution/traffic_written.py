@@ -47,8 +47,9 @@ def add_traffic(scene: CrashScene, xodr: str | None, density: Density, seed: int
 
 def _written(scene: CrashScene, xosc: str, xodr: str | None, traffic: Traffic) -> CrashWithTraffic:
     # the library that writes takes half a second to import
-    from sgcad_core.formats.openscenario.writing.background import with_background
+    from sgcad_core.formats.openscenario.writing.background import with_background, without_background
 
+    xosc = without_background(xosc)
     while traffic.vehicles:
         text = with_background(xosc, traffic.vehicles, [_coarse(track) for track in traffic.trajectories])
         played = {track.actor: track for track in play(text, xodr)}

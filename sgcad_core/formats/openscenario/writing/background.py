@@ -42,6 +42,19 @@ def with_background(xosc: str, vehicles: Sequence[ActorInfo], trajectories: Sequ
     return _text(xosc, root)
 
 
+def without_background(xosc: str) -> str:
+    """The scenario as it was before `with_background`; any other one unchanged. Raises InvalidOutput for no XML."""
+    if f'value="{ROLE}"' not in xosc:
+        return xosc
+    root = parse_xml(xosc, "scenario.xosc")
+    marked = root.xpath("Entities/ScenarioObject[*/Properties/Property[@name='role' and @value=$role]]", role=ROLE)
+    names = {vehicle.get("name") for vehicle in marked}
+    starts = [e for e in root.iterfind("Storyboard/Init/Actions/Private") if e.get("entityRef") in names]
+    for element in (*marked, *starts, *root.xpath("Storyboard/Story[@name=$role]", role=ROLE)):
+        element.getparent().remove(element)
+    return _text(xosc, root)
+
+
 def _version(root: Element) -> Version:
     told = f"1.{root.find('FileHeader').get('revMinor')}"
     return next((version for version in VERSIONS if version == told), DEFAULT_VERSION)
