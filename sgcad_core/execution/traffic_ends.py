@@ -18,6 +18,7 @@ FARTHEST_M = 140.0
 """Checks of scenario files allow 150 m beyond the network."""
 PLACE_M = 8.0
 BRAKING_MPS2 = 4.5
+STANDS_MPS = 1e-3
 
 
 class Stretch(NamedTuple):
@@ -71,7 +72,7 @@ def _on(pose: Floats, rows: int, place_m: float, sign: float) -> Floats:
 
 def _braking(speed_mps: float, place_m: float, t_s: Floats) -> tuple[Floats, Floats]:
     """Way and speed over time of a vehicle that goes on evenly and brakes evenly to a stand at a place."""
-    if speed_mps <= 0.0 or place_m <= 0.0:
+    if speed_mps < STANDS_MPS or place_m <= 0.0:
         return np.zeros(len(t_s)), np.zeros(len(t_s))
     way_m = min(speed_mps**2 / (2 * BRAKING_MPS2), place_m)
     from_s, lasts_s = (place_m - way_m) / speed_mps, 2 * way_m / speed_mps
