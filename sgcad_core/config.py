@@ -15,8 +15,8 @@ import yaml
 from pydantic import ConfigDict, Field, ValidationError
 
 from sgcad_core import config_extends, config_faults, settings
+from sgcad_core.case.density import NO_TRAFFIC
 from sgcad_core.case.records import Record
-from sgcad_core.case.traffic import NO_TRAFFIC
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import (
     Backbone,

@@ -18,8 +18,8 @@ from flows.drive import drive_stage
 from flows.export import ego_files, traffic_files
 from flows.player import overview_png, player_page
 from flows.player.player_data import View
+from sgcad_core.case.density import NO_TRAFFIC
 from sgcad_core.case.records import Attempt, RoadNetwork, Scenario, Trajectory
-from sgcad_core.case.traffic import NO_TRAFFIC
 from sgcad_core.config import Config
 from sgcad_core.errors import ConfigError, InvalidOutput, NoTraffic, SimulationFailed
 from sgcad_core.execution.traffic_written import CrashWithTraffic

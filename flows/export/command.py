@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from sgcad_core.case.traffic import DENSITIES, NO_TRAFFIC, Density
+from sgcad_core.case.density import DENSITIES, NO_TRAFFIC, Density
 from sgcad_core.errors import ConfigError
 from sgcad_core.formats.openscenario.writing.versions import VERSIONS, Version
 

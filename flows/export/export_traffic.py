@@ -11,7 +11,8 @@ from flows.export.finished_case import FinishedCase
 from flows.export.formats import Wish
 from flows.export.traffic_files import traffic_around_script, write_motion
 from flows.player.player_page import page_among
-from sgcad_core.case.traffic import Density, Traffic
+from sgcad_core.case.density import Density
+from sgcad_core.case.traffic import Traffic
 from sgcad_core.errors import BadInput
 from sgcad_core.interfaces import Simulator
 from sgcad_core.registry import plugin_class

@@ -9,8 +9,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from flows.case_files.case_folder import read_trajectories, write_trajectories
+from sgcad_core.case.density import Density
 from sgcad_core.case.records import ActorInfo
-from sgcad_core.case.traffic import ROLE, Background, CrashScene, Density, Traffic
+from sgcad_core.case.traffic import ROLE, Background, CrashScene, Traffic
 from sgcad_core.errors import BadInput
 from sgcad_core.execution.traffic_written import CrashWithTraffic, add_traffic
 from sgcad_core.formats.sumo.traffic_routes import FILE, traffic_routes

@@ -8,17 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, NamedTuple
 
+from sgcad_core.case.density import PER_KM, Density
 from sgcad_core.case.records import ActorInfo, Floats, Trajectory
 from sgcad_core.record_base import Record
 
-Density = Literal["light", "dense"]
-DENSITIES: tuple[Density, ...] = get_args(Density)
-PER_KM: Mapping[Density, float] = {"light": 5.0, "dense": 20.0}
-"""Vehicles per kilometre and lane: 8 and 32 per mile, inside levels of service A (up to 11) and D (26 to 35) of the
-Highway Capacity Manual, whose levels of freeways and multilane highways go by density (6th edition, exhibit 12-15)."""
-NO_TRAFFIC: Literal["none"] = "none"
 ROLE = "traffic"
 """What the column `role` of trajectories.csv, properties of entities and pages call a background vehicle."""
 

@@ -12,9 +12,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
+from sgcad_core.case.density import Density
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import ActorInfo, Floats, Trajectory
-from sgcad_core.case.traffic import CrashScene, Density, Driven, Entrant, Fixture, Traffic, TrafficOrder
+from sgcad_core.case.traffic import CrashScene, Driven, Entrant, Fixture, Traffic, TrafficOrder
 from sgcad_core.errors import NoTraffic
 from sgcad_core.execution.contact import first_contact
 from sgcad_core.execution.traffic_demand import Seed, demand, nearest_to, open_lanes

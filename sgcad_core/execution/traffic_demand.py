@@ -13,13 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sgcad_core.case.traffic import PER_KM, Density, Entrant
+from sgcad_core.case.density import PER_KM, Density
+from sgcad_core.case.traffic import Entrant
 from sgcad_core.geometry.plane import resample
 from sgcad_core.kinds import ACTORS
 from sgcad_core.roads.lane_graph import Connection, Edge, Lane, LaneGraph
 
-KINDS = ("car", "suv", "pickup", "van")
-"""Drawn evenly."""
+KINDS = tuple(record.id for record in ACTORS.values() if record.usual)
+"""Cars, SUVs, pickups and vans, drawn evenly."""
 QUIET_KINDS = ("driveway", "alley")
 """Kinds of roads without through traffic."""
 LEAST_LANE_M = 15.0

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sgcad_core.case.density import Density
 from sgcad_core.case.records import Trajectory
-from sgcad_core.case.traffic import CrashScene, Density, Traffic
+from sgcad_core.case.traffic import CrashScene, Traffic
 from sgcad_core.errors import InvalidOutput, NoTraffic
 from sgcad_core.execution.contact import first_contact
 from sgcad_core.execution.traffic import Drive, traffic_around

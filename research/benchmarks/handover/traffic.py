@@ -23,8 +23,9 @@ from flows.drive.script_of_case import case_folders
 from flows.export.export_traffic import SIMULATOR
 from flows.export.finished_case import FinishedCase
 from flows.export.traffic_files import traffic_around_script
+from sgcad_core.case.density import DENSITIES
 from sgcad_core.case.records import RoadNetwork, Scenario, Trajectory
-from sgcad_core.case.traffic import DENSITIES, Traffic
+from sgcad_core.case.traffic import Traffic
 from sgcad_core.errors import NoTraffic, SgcadError
 from sgcad_core.execution.contact import first_contact
 from sgcad_core.execution.traffic_written import CrashWithTraffic

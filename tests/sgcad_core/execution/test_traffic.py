@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from plugins.simulator.libsumo import LibSumo
-from sgcad_core.case.traffic import PER_KM, CrashScene, Driven
+from sgcad_core.case.density import PER_KM
+from sgcad_core.case.traffic import CrashScene, Driven
 from sgcad_core.errors import InvalidOutput, NoTraffic
 from sgcad_core.execution.contact import first_contact
 from sgcad_core.execution.scenario import compile_scenario

@@ -9,8 +9,8 @@ from tests.sgcad_core.formats.xosc_samples import actor
 from tests.sgcad_core.handover.scenes import crossing
 
 REPORT = (
-    "V1, a passenger car, was traveling east on Oak Street, a two-lane road, approaching a four-leg intersection. V2, a "
-    "pickup truck, was traveling north on Elm Avenue at 35 mph. The front of V2 struck the right side of V1."
+    "V1, a passenger car, was traveling east on Oak Street, a two-lane road, approaching a four-leg intersection. V2, "
+    "a pickup truck, was traveling north on Elm Avenue at 35 mph. The front of V2 struck the right side of V1."
 )
 
 
