@@ -49,6 +49,7 @@ Jobs = Annotated[
     int | None, typer.Option("--jobs", "-j", help="Cases at a time; default: the number of cores, 8 with a model.")
 ]
 Encoding = Annotated[str, typer.Option("--encoding", help="Encoding of the plan in the .xosc: timed or events.")]
+Traffic = Annotated[str, typer.Option("--traffic", help="Traffic around the crash: light, dense or none.")]
 Judge = Annotated[str, typer.Option("--judge", help="A second simulator, such as esmini, whose motion is compared.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Run finished cases again.")]
 Detail = Annotated[
@@ -94,6 +95,7 @@ def run(
     jobs: Jobs = None,
     fresh: Fresh = False,
     encoding: Encoding = "",
+    traffic: Traffic = "",
     server: Annotated[
         bool, typer.Option("--server", help="Show the run in Prefect; so it is where PREFECT_API_URL names a server.")
     ] = False,
@@ -103,7 +105,7 @@ def run(
     from flows.batch.tracking import track_rest
     from flows.case_files.find_cases import cases_of
 
-    made = _batch(cases_of(reports), config, [*(overrides or ()), *_encoded(encoding)], out, jobs, fresh)
+    made = _batch(cases_of(reports), config, [*(overrides or ()), *_options(encoding, traffic)], out, jobs, fresh)
     shown = server or bool(settings.prefect_url())
     run_them = run_batch.evaluate if shown else run_batch.evaluate_alone
     code, _ = _carry_out(made, lambda watch: run_them(made, watch.ended, on_step=watch.step))
@@ -123,6 +125,7 @@ def evaluate(
     fresh: Fresh = False,
     judge: Judge = "",
     encoding: Encoding = "",
+    traffic: Traffic = "",
     detail: Detail = "stage",
     workers: Workers = "auto",
     store: Store = "",
@@ -133,15 +136,16 @@ def evaluate(
     from flows.case_files.folder_cases import left_out
 
     judged = [f"judge.name={judge}"] if judge else []
-    named = [*(overrides or ()), *judged, *_encoded(encoding)]
+    named = [*(overrides or ()), *judged, *_options(encoding, traffic)]
     made = _batch(cases_in(cases), config, named, out, jobs, fresh).shown(detail, workers, store)
     made = dataclasses.replace(made, left=left_out(cases))
     leave(_carry_out(made, lambda watch: run_batch.evaluate(made, watch.ended, on_step=watch.step))[0])
 
 
-def _encoded(encoding: str) -> list[str]:
-    """The option as an override; loading the config reports a wrong value or a writer without this choice."""
-    return [f"scenario_writer.encoding={encoding}"] if encoding else []
+def _options(encoding: str, traffic: str) -> list[str]:
+    """Options as overrides; loading the config reports a wrong value or a plugin without this choice."""
+    told = {"scenario_writer.encoding": encoding, "traffic": traffic}
+    return [f"{key}={value}" for key, value in told.items() if value]
 
 
 def _batch(

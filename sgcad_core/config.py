@@ -9,12 +9,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 import yaml
 from pydantic import ConfigDict, Field, ValidationError
 
 from sgcad_core import config_extends, config_faults, settings
+from sgcad_core.case.density import NO_TRAFFIC
 from sgcad_core.case.records import Record
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import (
@@ -37,7 +38,7 @@ from sgcad_core.registry import plugin_class
 from sgcad_core.system.yaml_faults import YAML_FAULTS
 
 SINGLE = ("report_reader", "retriever", "backbone", "decoder", "road_writer", "scenario_writer", "simulator", "tracker")
-SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings", "second_opinion", "ego")
+SCALARS = ("seed", "max_attempts", "show_findings", "hold_findings", "second_opinion", "ego", "traffic")
 OPTIONAL = {"backbone", "decoder"}
 
 
@@ -80,6 +81,8 @@ class Config(Record):
     ego: str = Field("responder", pattern=r"^[\w-]+$")
     """The vehicle of ego.xosc that a stack is to drive: a role (responder, initiator, bystander) or an actor's id;
     none: no such file."""
+    traffic: Literal["none", "light", "dense"] = "none"
+    """Background vehicles around the crash: 5 (light) or 20 (dense) per kilometre and lane, drawn with `seed`."""
     report_reader: ReportReader
     retriever: Retriever
     backbone: Backbone | None = None
@@ -236,6 +239,11 @@ def _pairing(fields: dict[str, Any], raw: dict[str, Any]) -> list[str]:
             f"decoder: {_name(raw['decoder'])!r} would decode nothing: road_writer {_name(raw['road_writer'])!r} and "
             f"scenario_writer {_name(raw['scenario_writer'])!r} ask no model; leave it out, or choose a config with a "
             "backbone, such as mini.yaml"
+        )
+    if raw.get("traffic", NO_TRAFFIC) != NO_TRAFFIC and not cast("Simulator", fields["simulator"]).drives_traffic:
+        faults.append(
+            f"traffic: simulator {_name(raw['simulator'])!r} drives no traffic; take simulator 'libsumo', or "
+            "traffic: none"
         )
     if backbone and decoder and decoder.needs_prior and not backbone.gives_logits:
         faults.append(

@@ -9,6 +9,7 @@
     │   └── Unsupported    right, but more than our player plays      (named with its line, never left out silently)
     ├── WrongEdit          a person's fact cannot be taken: give another (result and facts.yaml stay as they were)
     ├── Refused            the evidence does not carry the crash      (a result, never retried)
+    ├── NoTraffic          no room for traffic around this crash      (the crash stays as it is, without it)
     ├── PluginFault        a plugin broke its interface: mend it      (the case fails at once, the batch goes on)
     └── SimulationFailed   the execution died: may be retried         (the case fails, the batch goes on)
         └── ProcessDied    killed or crashed, not late: once more     (a second death is the case's failure)
@@ -82,6 +83,10 @@ class Refused(SgcadError):
         super().__init__(reason)
         self.reason = reason
         self.missing = tuple(missing)
+
+
+class NoTraffic(SgcadError):
+    """A crash has no room for traffic; the message says why. The crash itself is not concerned."""
 
 
 class PluginFault(SgcadError):

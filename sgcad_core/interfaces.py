@@ -30,6 +30,8 @@ from sgcad_core.case.records import (
     Severity,
 )
 from sgcad_core.case.tracker_arm import Arm
+from sgcad_core.case.traffic import Driven, TrafficOrder
+from sgcad_core.errors import ConfigError
 
 Ask = Callable[[Context, Query], Generation]
 """How a writer speaks to the model: backbone and decoder are already chosen, the call is recorded."""
@@ -192,6 +194,11 @@ class Simulator(Plugin):
 
     kind = "simulator"
 
+    @property
+    def drives_traffic(self) -> bool:
+        """Whether it has drivers of its own, for `drive_traffic`."""
+        return type(self).drive_traffic is not Simulator.drive_traffic
+
     def ready(self) -> None:
         """Called before a batch starts. Raises MissingTool where a program lacks; the default needs none."""
         return
@@ -199,6 +206,13 @@ class Simulator(Plugin):
     @abstractmethod
     def execute(self, scenario: Scenario, network: RoadNetwork) -> Execution:
         """Execute in a process that may die. Raises SimulationFailed."""
+
+    def drive_traffic(self, order: TrafficOrder) -> tuple[Driven, ...]:
+        """Background vehicles driven among the actors of a crash, in a process that may die.
+
+        Those that find no room are left out. Raises ConfigError where it has no drivers of its own; SimulationFailed.
+        """
+        raise ConfigError(f"simulator {type(self).__name__} drives no traffic: take libsumo, or traffic: none")
 
 
 class Driver(Plugin):

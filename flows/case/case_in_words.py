@@ -28,6 +28,7 @@ def lines(results: Sequence[Mapping[str, Any]]) -> list[str]:
         *near,
         *account_lines(result),
         *disagreement_lines(result),
+        *traffic_lines(result),
         *(f"note: {note['text']}" for note in result["notes"][:MAX_LINES]),
     ]
 
@@ -53,6 +54,22 @@ def disagreement_lines(result: Mapping[str, Any]) -> list[str]:
     found = result.get("disagreements") or ()
     lines = [f"readers differ: {Disagreement.model_validate(one).line()}" for one in found[:MAX_LINES]]
     return lines + ([f"readers differ about {len(found) - MAX_LINES} more"] if len(found) > MAX_LINES else [])
+
+
+def traffic_lines(result: Mapping[str, Any]) -> list[str]:
+    """A line on the traffic around the crash: how many vehicles, and why others were left out; none without traffic."""
+    told = result.get("traffic")
+    if not told:
+        return []
+    if lacks := told.get("lacks"):
+        return [f"traffic: none ({lacks})"]
+    beside = [f"{count} {why}" for why, count in told["removed"].items()]
+    more = [f"left out: {', '.join(beside)}"] if beside else []
+    more += [f"{told['moved']} began elsewhere to keep clear"] if told["moved"] else []
+    placed = (
+        f"traffic: {len(told['vehicles'])} vehicles, {told['density']} ({told['per_km_and_lane']:g} per km and lane)"
+    )
+    return ["; ".join([placed, *more, *told["notes"]])]
 
 
 def lacking_counted(account: Mapping[str, Any] | None) -> str:

@@ -15,12 +15,14 @@ from flows.case_files import case_folder
 from flows.case_files.find_cases import Case
 from flows.case_files.step_keys import StepKeys
 from flows.drive import drive_stage
-from flows.export import ego_files
+from flows.export import ego_files, traffic_files
 from flows.player import overview_png, player_page
 from flows.player.player_data import View
+from sgcad_core.case.density import NO_TRAFFIC
 from sgcad_core.case.records import Attempt, RoadNetwork, Scenario, Trajectory
 from sgcad_core.config import Config
-from sgcad_core.errors import ConfigError
+from sgcad_core.errors import ConfigError, InvalidOutput, NoTraffic, SimulationFailed
+from sgcad_core.execution.traffic_written import CrashWithTraffic
 from sgcad_core.formats.openscenario.writing.header import stamped
 from sgcad_core.handover.script import Script
 from sgcad_core.records.facts import Fact
@@ -102,8 +104,9 @@ def write_files(run: CaseRun, folder: Path) -> dict[str, Any]:
     result = result_of(record) if run.result is None else run.result
     result["impact"] = drive_stage.impact(script, record) if script else None
     result["rules"] = rules.findings if rules else []
-    _draw(run, folder, record, result)
-    _hand_to_a_stack(run, folder, record, script, result)
+    made = _add_traffic(run, folder, record, script, result)
+    _draw(run, folder, record, result, made)
+    _hand_to_a_stack(run, folder, record, script, result, made)
     result["seconds"] = seconds_of(record)  # with those of the drawing
     if run.keys:
         result["shared"] = run.shared
@@ -126,26 +129,57 @@ def _hand_over(run: CaseRun, folder: Path, record: CaseRecord, script: Script | 
             run.metrics["drive"] = drive_stage.driven(run.config.drive, record, folder)
 
 
-def _draw(run: CaseRun, folder: Path, record: CaseRecord, result: dict[str, Any]) -> None:
+def _add_traffic(
+    run: CaseRun, folder: Path, record: CaseRecord, script: Script | None, result: dict[str, Any]
+) -> CrashWithTraffic | None:
+    """Add the config's traffic to an executed case; where there is no room for it, say so and leave the case as it
+    is."""
+    if script is None or run.config.traffic == NO_TRAFFIC:
+        return None
+    xodr = record.network.xodr if record.network else None
+    wanted = run.config.traffic, run.config.seed, run.config.simulator
+    try:
+        with run.clock("traffic"):
+            made = traffic_files.traffic_around_script(script, xodr, *wanted)
+    except (NoTraffic, SimulationFailed, InvalidOutput) as fault:
+        result["traffic"] = {
+            "density": run.config.traffic,
+            "seed": run.config.seed,
+            "vehicles": [],
+            "lacks": str(fault),
+        }
+        return None
+    traffic_files.write_motion(folder, script, made.traffic)
+    result["traffic"] = made.traffic.summary()
+    return made
+
+
+def _draw(
+    run: CaseRun, folder: Path, record: CaseRecord, result: dict[str, Any], made: CrashWithTraffic | None
+) -> None:
     """player.html and picture.png of an executed case."""
     if record.network and record.scenario and record.execution and run.report:
         with run.clock("draw"):
             view = View.of(record, run.report, run.metrics or {}, result, drives_in(folder))
+            view = view.among(made.traffic.background if made else ())
             (folder / "player.html").write_text(player_page.page(view), encoding="utf-8")
             (folder / "picture.png").write_bytes(overview_png.png(view))
 
 
 def _hand_to_a_stack(
-    run: CaseRun, folder: Path, record: CaseRecord, script: Script | None, result: dict[str, Any]
-) -> None:
+    run: CaseRun, folder: Path, record: CaseRecord, script: Script | None, result: dict[str, Any],
+    made: CrashWithTraffic | None,
+) -> None:  # fmt: skip
     """Name source, date and assumptions in scenario.xosc, and write ego.xosc of an executed case."""
     if record.scenario is None or record.scenario.xosc is None:
         return
     with run.clock("draw"):
         source = ego_files.source_of(result)
-        (folder / "scenario.xosc").write_text(stamped(record.scenario.xosc, source), encoding="utf-8")
+        xosc = made.xosc if made and made.xosc else record.scenario.xosc
+        (folder / "scenario.xosc").write_text(stamped(xosc, source), encoding="utf-8")
         if script and run.config.ego != ego_files.NO_EGO:
-            ego_files.write_beside_case(folder, script, record, run.config, source)
+            background = made.traffic.background if made else ()
+            ego_files.write_beside_case(folder, script, record, run.config, source, background)
 
 
 def drives_in(folder: Path) -> dict[str, Sequence[Trajectory]]:

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from sgcad_core.case.records import Attempt, CrashReport, RoadNetwork, Scenario, Trajectory
+from sgcad_core.case.traffic import ROLE
 from sgcad_core.errors import BadInput, ConfigError
 from sgcad_core.result import CaseRecord
 from sgcad_core.system.private_folders import open_as_parent
@@ -32,6 +33,8 @@ CONFIG = "config.yaml"
 """In the folder of a config's cases: the effective config."""
 DIGEST = ".digest"
 TRACKED = ".tracked"
+CRASH = "crash"
+"""Role of an actor of the crash in trajectories.csv; that of a background vehicle is `ROLE`."""
 PARTIAL = ".partial-"
 REPLACE_TRIES = 20
 """Maximum tries to replace a folder that other processes replace at the same time."""
@@ -213,25 +216,30 @@ def write_scenario(folder: Path, scenario: Scenario) -> None:
             (folder / name).write_text(text, encoding="utf-8")
 
 
-def write_trajectories(file: Path, trajectories: Sequence[Trajectory]) -> None:
+def write_trajectories(file: Path, trajectories: Sequence[Trajectory], traffic: Sequence[Trajectory] = ()) -> None:
     """trajectories.csv: t_s, actor, x_m, y_m, heading_rad, speed_mps; all actors of an instant together.
 
-    Where an actor rolls over, a column roll_rad follows.
+    Where an actor rolls over, a column roll_rad follows; where there is traffic, a column role (crash or traffic).
     """
     rolls = any(track.roll_rad is not None for track in trajectories)
     rows = []
-    for k, track in enumerate(trajectories):
+    for k, track in enumerate((*trajectories, *traffic)):
         columns = (track.t_s, track.x_m, track.y_m, track.heading_rad, track.speed_mps, track.rolls)
+        role = f",{CRASH if k < len(trajectories) else ROLE}" if traffic else ""
         for t, x, y, heading, speed, roll in zip(*columns, strict=True):
-            more = f",{roll:.5f}" if rolls else ""
+            more = (f",{roll:.5f}" if rolls else "") + role
             rows.append((float(t), k, f"{t:.2f},{track.actor},{x:.6f},{y:.6f},{heading:.7f},{speed:.4f}{more}\n"))
     with file.open("w", encoding="utf-8", newline="") as out:
-        out.write(f"t_s,actor,x_m,y_m,heading_rad,speed_mps{',roll_rad' if rolls else ''}\n")
+        names = f"{',roll_rad' if rolls else ''}{',role' if traffic else ''}"
+        out.write(f"t_s,actor,x_m,y_m,heading_rad,speed_mps{names}\n")
         out.writelines(row for _, _, row in sorted(rows))
 
 
-def read_trajectories(file: Path) -> tuple[Trajectory, ...]:
-    """Read a trajectories.csv, actors in the order of the file. Raises BadInput for any other content."""
+def read_trajectories(file: Path, role: str = CRASH) -> tuple[Trajectory, ...]:
+    """Read a trajectories.csv, actors in the order of the file: those of the crash, or the vehicles of its traffic.
+
+    Raises BadInput for any other content.
+    """
     needed = ("t_s", "x_m", "y_m", "heading_rad", "speed_mps")
     rows: dict[str, list[list[float]]] = {}
     with file.open(encoding="utf-8", newline="") as lines:
@@ -239,7 +247,8 @@ def read_trajectories(file: Path) -> tuple[Trajectory, ...]:
             table = csv.DictReader(lines)
             names = [*needed, *(name for name in table.fieldnames or () if name == "roll_rad")]
             for row in table:
-                rows.setdefault(row["actor"], []).append([_finite(row[name]) for name in names])
+                if row.get("role", CRASH) == role:
+                    rows.setdefault(row["actor"], []).append([_finite(row[name]) for name in names])
         except (KeyError, TypeError, ValueError, csv.Error) as fault:
             raise BadInput(
                 f"{file}: cannot be read as trajectories ({str(fault)[:100]}): every row needs actor "

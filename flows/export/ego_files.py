@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from sgcad_core.case.traffic import Background
 from sgcad_core.config import Config
 from sgcad_core.errors import ConfigError
 from sgcad_core.formats.openscenario.writing.header import Source, today
@@ -38,7 +39,7 @@ def ego_of(script: Script, wanted: str) -> str | None:
 
 def write_ego_files(
     folder: Path, script: Script, ego: str, source: Source, behavior: BehaviorSpec | None, xodr: str | None,
-    version: Version,
+    version: Version, background: Background = (),
 ) -> list[Path]:  # fmt: skip
     """Write the four files into a folder that holds road.xodr; their paths. Raises ConfigError, InvalidOutput."""
     from sgcad_core.handover.ego_file.write import EgoFile, write_ego
@@ -46,7 +47,7 @@ def write_ego_files(
     staging = staging_for(script, ego)
     texts = {scripts.ESMINI: scripts.RUN_ESMINI, scripts.CARLA: scripts.run_carla(ego)}
     for name, minor in ((scripts.FILE, version), (scripts.CARLA_FILE, CARLA)):
-        texts[name] = write_ego(staging, EgoFile(source, behavior, xodr, minor))
+        texts[name] = write_ego(staging, EgoFile(source, behavior, xodr, minor, background=background))
     written = []
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
@@ -55,12 +56,14 @@ def write_ego_files(
     return written
 
 
-def write_beside_case(folder: Path, script: Script, record: CaseRecord, config: Config, source: Source) -> None:
+def write_beside_case(
+    folder: Path, script: Script, record: CaseRecord, config: Config, source: Source, background: Background = ()
+) -> None:
     """Write the files of an executed case's ego as the config chooses it, where the case has such an actor."""
     with suppress(ConfigError):  # an id that this case does not have
         if (ego := ego_of(script, config.ego)) and record.network and record.scenario:
             version = getattr(config.scenario_writer, "openscenario", DEFAULT_VERSION)
-            about = source, record.scenario.behavior, record.network.xodr, version
+            about = source, record.scenario.behavior, record.network.xodr, version, background
             write_ego_files(folder, script, ego, *about)
 
 

@@ -13,6 +13,8 @@ from pydantic import ValidationError
 from flows.case_files.case_folder import read_json
 from flows.drive.script_of_case import script_of
 from flows.export.ego_files import ego_of, no_ego, source_of
+from flows.export.traffic_files import traffic_in
+from sgcad_core.case.traffic import Background
 from sgcad_core.errors import BadInput
 from sgcad_core.formats.openscenario.writing.header import Source
 from sgcad_core.handover.script import Script
@@ -34,6 +36,11 @@ class FinishedCase:
     def result(self) -> dict[str, Any]:
         """result.json."""
         return read_json(self.folder / "result.json")
+
+    @cached_property
+    def background(self) -> Background:
+        """The vehicles of its traffic, if it was run with some. Raises BadInput."""
+        return traffic_in(self.folder, self.result)
 
     @property
     def source(self) -> Source:

@@ -10,7 +10,7 @@ from pathlib import Path
 from flows.export.ego_files import write_ego_files
 from flows.export.finished_case import FinishedCase
 from sgcad_core.case.driver_io import STEP_S
-from sgcad_core.case.records import ObservedContact, Trajectory
+from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory
 from sgcad_core.formats.openscenario.writing.versions import DEFAULT_VERSION, Version
 from sgcad_core.handover.ego_file.cue import cue_of
 from sgcad_core.handover.ego_file.others import AFTER_S, motion_of
@@ -32,7 +32,9 @@ def _ego(case: FinishedCase, place: Path, wish: Wish) -> list[Path]:
     folder = place / ego
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "road.xodr").write_text(case.xodr, encoding="utf-8")
-    return write_ego_files(folder, case.script, ego, case.source, case.behavior, case.xodr, wish.version)
+    return write_ego_files(
+        folder, case.script, ego, case.source, case.behavior, case.xodr, wish.version, case.background
+    )
 
 
 def _commonroad(case: FinishedCase, place: Path, wish: Wish) -> list[Path]:
@@ -41,13 +43,19 @@ def _commonroad(case: FinishedCase, place: Path, wish: Wish) -> list[Path]:
 
     ego, (staging, contact_s) = case.ego(wish.ego), _staged(case, wish)
     others = [motion_of(staging, name, contact_s, AFTER_S) for name in staging.lines if name not in staging.coupled]
-    infos = {actor.id: actor for actor in case.script.actors}
+    others += [track for _, track in case.background]
+    infos = _infos(case)
     place.mkdir(parents=True, exist_ok=True)
     file = place / f"{case.script.case}.xml"
     mine = motion_of(staging, ego, contact_s, AFTER_S)
     problem = Problem(case.script.case, case.script.graph, infos, mine, others, case.source.date[:10])
     file.write_text(write_commonroad(problem), encoding="utf-8")
     return [file]
+
+
+def _infos(case: FinishedCase) -> dict[str, ActorInfo]:
+    """Actors and background vehicles by id."""
+    return {info.id: info for info in (*case.script.actors, *(vehicle for vehicle, _ in case.background))}
 
 
 def _staged(case: FinishedCase, wish: Wish) -> tuple[Staging, float]:
@@ -93,8 +101,8 @@ def _scenarionet(case: FinishedCase, place: Path, wish: Wish) -> list[Path]:
     from sgcad_core.formats.scenarionet.record import DATASET, scenario_record
 
     script, ego = case.script, case.ego(wish.ego)
-    infos = {actor.id: actor for actor in script.actors}
-    record = scenario_record(script.case, script.graph, infos, script.trajectories, ego)
+    tracks = (*script.trajectories, *(track for _, track in case.background))
+    record = scenario_record(script.case, script.graph, _infos(case), tracks, ego)
     place.mkdir(parents=True, exist_ok=True)
     file = place / f"sd_{DATASET}_v1_{script.case}.pkl"
     tables = {file: record, place / "dataset_summary.pkl": {file.name: record["metadata"]}}

@@ -11,7 +11,7 @@
   const seated = parent !== window && /[#&]embed\b/.test(location.hash);   // in the desk: the stage alone, which says what is pointed at
   document.body.classList.toggle("seated", seated);
   let lit = new Set();                                   // things pointed at: "V1", "road main", "contact"
-  const layer = { paths: true, labels: true, rest: true, signs: true, names: true, assumed: true };
+  const layer = { paths: true, labels: true, rest: true, signs: true, names: true, assumed: true, ...((data.traffic || []).length ? { traffic: true } : {}) };
   let other = null, beside = false, measured = null;     // another run, whether it has a half of its own, two points in metres
   let pane = { left: 0, wide: 0, actors: data.actors };  // the half that is drawn into
   let now = 0, playing = false, before = 0, follow = false, box = { x: 0, y: 0, scale: 4 };
@@ -193,6 +193,11 @@
     if (w <= 1 && actor.outline !== "round") { ink.fillStyle = "#fff"; ink.beginPath(); ink.arc(l * 0.3, 0, w * 0.2, 0, 7); ink.fill(); }
     ink.restore();
   }
+  function drawBackground(vehicle) {                     // no part of the crash: paler, without shadow, path and label
+    const p = pose(vehicle, now), l = vehicle.length_m, w = vehicle.width_m, glass = l / 2 - Math.min(l * 0.3, 1.9);
+    ink.save(); outline(vehicle, p); ink.globalAlpha = 0.8; ink.fillStyle = vehicle.color; ink.fill();
+    ink.fillStyle = "rgba(15,25,35,.4)"; ink.fillRect(glass, -w * 0.38, 0.6, w * 0.76); ink.restore();
+  }
   function labelPlace(actor) {                           // beside the box, away from the others where they are near
     const p = pose(actor, now), [x, y] = toScreen(p.x, p.y), reach = actor.length_m * box.scale * 0.5;
     const met = pane.actors.some((one) => { const q = pose(one, now); return one !== actor && Math.hypot(p.x - q.x, p.y - q.y) < actor.length_m + one.length_m; });
@@ -251,6 +256,7 @@
     if (layer.paths) pane.actors.forEach(drawPath);
     if (layer.rest) pane.actors.forEach((a) => { if (now < a.x.length - 2) drawGhost(a, restOf(a), [2, 3], 0.75); });
     if (other && halves === 1) inRun(other).forEach((a) => drawGhost(a, pose(a, now), [7, 4], 1));
+    if (layer.traffic) (data.traffic || []).forEach(drawBackground);
     pane.actors.forEach(drawActor);
     ink.restore();
     if (layer.names) drawNames();

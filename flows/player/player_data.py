@@ -14,6 +14,7 @@ from flows.player.player_highlights import MARK_WORDS, facts_by_thing, road_alon
 from flows.player.road_shapes import Drawing, drawing_of
 from flows.player.signals_shown import SignalShown, signals_shown
 from sgcad_core.case.records import ActorInfo, CrashReport, Floats, Scenario, Trajectory
+from sgcad_core.case.traffic import Background
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.geometry.plane import Box, overlap_polygon
 from sgcad_core.metrics.conflict import box_distance, time_to_collision
@@ -23,6 +24,7 @@ from sgcad_core.result import CaseRecord
 
 COLORS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c564b", "#7f7f7f")
 """Okabe and Ito's palette (told apart by color-blind readers); first red and blue, as crash diagrams draw V1 and V2."""
+TRAFFIC_COLOR = "#c9cfd4"
 DIAGRAM_LIMIT = 3
 """Diagrams shown beside a player."""
 
@@ -55,6 +57,8 @@ class View:
     signals: Sequence[SignalShown] = ()
     drive: Mapping[str, Any] | None = None
     """Of a drive: its outcome with the reason, and the sentences of its rules."""
+    traffic: Background = ()
+    """Background vehicles, drawn lighter."""
 
     @staticmethod
     def of(
@@ -76,6 +80,10 @@ class View:
         )
         shown = signals_shown(parse_net(network.net_xml), scenario.xosc, movers[0].track.t_s if movers else np.zeros(0))
         return View(record, report, metrics, result, drawing_of(network.net_xml), movers, runs or {}, signals=shown)
+
+    def among(self, traffic: Background) -> View:
+        """The same with background vehicles."""
+        return replace(self, traffic=traffic)
 
     def contact_point(self) -> tuple[float, float] | None:
         """Middle of the first overlap, metres; None if nothing touched."""
@@ -148,6 +156,7 @@ class View:
             "signals": {s.edge: s.changes for s in self.signals},
             "drive": self.drive,
             "actors": [_actor(mover) for mover in self.movers],
+            "traffic": traffic_shown(self.traffic),
             "t_s": _rounded(self.movers[0].track.t_s, 2) if self.movers else [],
             "near": self._nearness(),
             "runs": [
@@ -178,6 +187,16 @@ def _track(mover: Mover) -> Track:
 
 def _actor(mover: Mover) -> dict[str, Any]:
     return {**mover.info.model_dump(), "outline": mover.info.record.outline, "color": mover.color, **_path(mover.track)}
+
+
+def traffic_shown(traffic: Background) -> list[dict[str, Any]]:
+    """Background vehicles for the page's script."""
+    return [
+        {
+            "id": info.id, "length_m": info.length_m, "width_m": info.width_m, "color": TRAFFIC_COLOR, **_path(track),
+        }
+        for info, track in traffic
+    ]  # fmt: skip
 
 
 def _path(track: Trajectory) -> dict[str, Any]:

@@ -9,22 +9,39 @@ from __future__ import annotations
 import html
 import json
 import re
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
-from flows.player.player_data import View
+from flows.player.player_data import View, traffic_shown
+from sgcad_core.case.traffic import Background
 
 HERE = Path(__file__).parent
 SCRIPTS = ("player.js", "player_tools.js", "player_words.js")
 """One function, in three files: stage and clock; helpers, units, plots, layers, runs; words and tables."""
 SLOT = re.compile(r"%TITLE%|%DATA%|/\*STYLE\*/|/\*SCRIPT\*/")
 
+DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
+
 
 def page(view: View) -> str:
     """The whole page as text."""
-    data = json.dumps(view.as_json(), ensure_ascii=False, separators=(",", ":"))
+    return _page(view.as_json())
+
+
+def page_among(page: str, traffic: Background) -> str:
+    """A page that was written, anew with background vehicles. Raises ValueError for a text that is no such page."""
+    found = DATA.search(page)
+    if found is None:
+        raise ValueError("it has no data of a player")
+    return _page(json.loads(found[1]) | {"traffic": traffic_shown(traffic)})
+
+
+def _page(shown: Mapping[str, Any]) -> str:
+    data = json.dumps(shown, ensure_ascii=False, separators=(",", ":"))
     parts = {
-        "%TITLE%": html.escape(f"{view.record.case} · {view.record.config}"),
+        "%TITLE%": html.escape(f"{shown['case']} · {shown['config']}"),
         "/*STYLE*/": _part("player.css"),
         "/*SCRIPT*/": '"use strict";\n(() => {\n' + "".join(map(_part, SCRIPTS)) + "})();\n",
         "%DATA%": data.replace("<", "\\u003c"),

@@ -91,7 +91,7 @@
   for (const name of Object.keys(layer)) {
     const label = document.createElement("label"), check = Object.assign(document.createElement("input"), { type: "checkbox", checked: true, id: `layer-${name}` });
     check.onchange = () => { layer[name] = check.checked; draw(); };
-    label.append(check, { paths: "paths", labels: "names of vehicles", rest: "rest poses", signs: "signs and arrows", names: "roads", assumed: "what is assumed" }[name]);
+    label.append(check, { paths: "paths", labels: "names of vehicles", rest: "rest poses", signs: "signs and arrows", names: "roads", assumed: "what is assumed", traffic: "traffic" }[name]);
     $("layers").append(label);
   }
   $("measure").onclick = () => { measuring = !measuring; measured = null; $("measure").setAttribute("aria-pressed", measuring); canvas.style.cursor = measuring ? "crosshair" : ""; draw(); };
@@ -112,6 +112,7 @@
     if (!["actor", "x_m", "y_m", "heading_rad", "speed_mps"].every((n) => names.includes(n))) throw new Error("no trajectories.csv and no player.html");
     for (const line of lines) {
       const cells = Object.fromEntries(line.split(",").map((v, k) => [names[k], v]));
+      if (cells.role === "traffic") continue;
       if (!found.has(cells.actor)) found.set(cells.actor, { id: cells.actor, x: [], y: [], heading: [], speed: [] });
       const a = found.get(cells.actor);
       a.x.push(Number(cells.x_m)); a.y.push(Number(cells.y_m)); a.heading.push(Number(cells.heading_rad)); a.speed.push(Number(cells.speed_mps));

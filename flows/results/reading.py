@@ -19,6 +19,7 @@ import numpy as np
 from flows.case_files.case_folder import read_json
 from flows.results.levels import level_of
 from sgcad_core.case.records import Finding, Stage
+from sgcad_core.case.traffic import ROLE
 from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.formats.sumo.net_xml import lanes_between
 from sgcad_core.metrics.generation import AttemptRecord, CaseRecord
@@ -203,6 +204,8 @@ def paths_of(folder: Path, result: Mapping[str, Any]) -> dict[str, Motion]:
     actor = head.split(",").index("actor")
     for line in lines:
         fields = line.split(",")
+        if fields[-1] == ROLE:
+            continue
         rows[fields[actor]].append(tuple(float(fields[k]) for k in order))
     found = {}
     for name, values in rows.items():

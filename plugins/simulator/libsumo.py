@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import Field
 
 from sgcad_core.case.records import Execution, Floats, RoadNetwork, Scenario, Trajectory
+from sgcad_core.case.traffic import Driven, TrafficOrder
 from sgcad_core.errors import InvalidOutput, SimulationFailed
 from sgcad_core.execution.playback import execution_of, played
 from sgcad_core.formats.openscenario.playing.player import DT_S
@@ -24,9 +25,9 @@ TOLERANCE_M = 0.01
 
 
 @functools.cache
-def _worker(function: str) -> Worker:
+def _worker(function: str, module: str = "_sumo_worker") -> Worker:
     """One SUMO process for all simulators of this process, since its start takes half a second."""
-    return Worker(f"plugins.simulator._sumo_worker:{function}")
+    return Worker(f"plugins.simulator.{module}:{function}")
 
 
 class LibSumo(Simulator):
@@ -50,6 +51,11 @@ class LibSumo(Simulator):
             return self._drive(scenario, scenario.routes_xml, network.net_xml)
         return self._replay(scenario, network, network.net_xml)
 
+    def drive_traffic(self, order: TrafficOrder) -> tuple[Driven, ...]:
+        """SUMO's drivers among the actors. Raises SimulationFailed."""
+        driven: tuple[Driven, ...] = self._ask(_worker("drive_traffic", "_sumo_traffic"), order)
+        return driven
+
     def _replay(self, scenario: Scenario, network: RoadNetwork, net_xml: str) -> Execution:
         wanted = played(scenario, network)
         movers = [
@@ -72,7 +78,9 @@ class LibSumo(Simulator):
         return execution_of("libsumo", scenario, seen, "\n".join(notes))
 
     def _call(self, function: str, *args: Any) -> Any:
-        worker = _worker(function)
+        return self._ask(_worker(function), *args)
+
+    def _ask(self, worker: Worker, *args: Any) -> Any:
         try:
             return worker.call(*args, timeout_s=self.timeout_s)
         except SimulationFailed as fault:

@@ -227,7 +227,7 @@ def overlap_centers(first: Floats, first_size: Size, second: Floats, second_size
     theirs = corners_of(second, second_size)
     ours = corners_of(first, first_size)
     crossings, crossed = _side_crossings(local_points(first, theirs), first_size)
-    points = np.concatenate((theirs, ours, _world_points(first, crossings)), axis=1)
+    points = np.concatenate((theirs, ours, world_points(first, crossings)), axis=1)
     used = np.concatenate(
         (_inside(local_points(first, theirs), first_size), _inside(local_points(second, ours), second_size), crossed),
         axis=1,
@@ -254,7 +254,8 @@ def _inside(local: Floats, size: Size) -> NDArray[np.bool_]:
     return (np.abs(local[..., 0]) <= size[0] / 2) & (np.abs(local[..., 1]) <= size[1] / 2)
 
 
-def _world_points(poses: Floats, local: Floats) -> Floats:
+def world_points(poses: Floats, local: Floats) -> Floats:
+    """(n, k, 2) points in the frames of (n, 3) poses, in the world; `local`: as those of `local_points`."""
     cos, sin = np.cos(poses[:, 2])[:, None], np.sin(poses[:, 2])[:, None]
     x, y = local[..., 0], local[..., 1]
     return np.stack((poses[:, :1] + x * cos - y * sin, poses[:, 1:2] + x * sin + y * cos), axis=-1)

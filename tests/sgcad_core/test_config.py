@@ -47,6 +47,11 @@ def test_validators_are_told_apart_by_stage():
         ({"decoder": {"name": "cad", "alpha": "much"}}, r"decoder.alpha: .*valid number.* \(found 'much'\)"),
         ({"validators": "topology"}, r"validators: expected a list, found 'topology'"),
         ({"validators": [{"nam": "x"}]}, r"validators\[0\]: expected a mapping with a `name`"),
+        ({"traffic": "heavy", "simulator": "libsumo"}, r"traffic: .*'none', 'light' or 'dense' \(found 'heavy'\)"),
+        (
+            {"traffic": "light"},
+            r"traffic: simulator 'kinematic' drives no traffic; take simulator 'libsumo', or traffic: none",
+        ),
         ({"max_attempts": 11}, r"max_attempts: .*less than or equal to 10 \(found 11\)"),
         ({"seed": -1}, r"seed: .*greater than or equal to 0"),
         ({"road_writer": "spec"}, r"backbone: missing, but road_writer ask a model"),

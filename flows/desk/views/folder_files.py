@@ -18,7 +18,7 @@ from sgcad_core.system.report_files import is_regular, leads_inside, read_regula
 FILES: Mapping[str, str] = {
     "scenario.xosc": "OpenSCENARIO", "scenario.rou.xml": "SUMO routes", "road.xodr": "OpenDRIVE",
     "road.net.xml": "SUMO network", "trajectories.csv": "trajectories", "metrics.json": "metrics",
-    "result.json": "result", "report.txt": "report", "facts.yaml": "edits",
+    "traffic.rou.xml": "SUMO traffic", "result.json": "result", "report.txt": "report", "facts.yaml": "edits",
 }  # fmt: skip
 """Files of a case's folder that can be downloaded."""
 RESULT = "result.json"

@@ -14,13 +14,17 @@ import numpy as np
 
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import ActorInfo, Floats, Trajectory
+from sgcad_core.case.traffic import ROLE, Background
 from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.writing.entities import center_ahead_m
 from sgcad_core.formats.openscenario.writing.vertices import APART_M, vertex_rows
 from sgcad_core.formats.openscenario.writing.writer import origin_motion
-from sgcad_core.geometry.plane import wrap_angle
+from sgcad_core.geometry.plane import arc_lengths, headings, wrap_angle
+from sgcad_core.handover.ego_file.cue import Cue
 from sgcad_core.handover.ego_file.elements import node
-from sgcad_core.handover.script import Staging
+from sgcad_core.handover.lane_following import Start, continued_line
+from sgcad_core.handover.script import Script, Staging
+from sgcad_core.roads.lane_graph import LaneGraph
 
 AFTER_S = 8.0
 """How long the lines go on behind the conflict."""
@@ -28,6 +32,8 @@ _COARSE = 4
 """Of so many samples behind the conflict one is written."""
 INDENT = "  " * 15
 """Of the vertices."""
+BRAKES_MPS2 = 4.5
+"""By which the traffic stops behind the script: SUMO's usual deceleration, on which its vehicles' gaps are built."""
 _STILL_M = 0.02
 """An actor that goes less than this from sample to sample all the way stands."""
 
@@ -41,6 +47,8 @@ class Other:
     """Its origin's motion from the start to some time behind the conflict."""
     rows: tuple[int, ...]
     """Those that are written; none of an actor that stands."""
+    clock: str
+    """Its parameters for the time have this name before them: its id, that of all traffic for a background vehicle."""
 
     @property
     def start(self) -> Pose:
@@ -58,7 +66,10 @@ class Other:
         line.text = self.mark
         path = node("Trajectory", node("Shape", line), name=f"{name}_line", closed=False)
         timing = node(
-            "Timing", domainAbsoluteRelative="relative", scale=f"${name}_TimeScale", offset=f"${name}_TimeOffset"
+            "Timing",
+            domainAbsoluteRelative="relative",
+            scale=f"${self.clock}_TimeScale",
+            offset=f"${self.clock}_TimeOffset",
         )
         mode = node("TrajectoryFollowingMode", followingMode="position")
         told = [node("TrajectoryRef", path), node("TimeReference", timing), mode]
@@ -106,7 +117,40 @@ def _from_row(move: Trajectory, row: int) -> Trajectory:
 def _other(actor: ActorInfo, center: Trajectory, contact_s: float) -> Other:
     move, last = origin_motion(actor, center), len(center.t_s)
     moves = last > 1 and bool((np.hypot(*np.diff(move.points, axis=0).T) > _STILL_M).any())
-    return Other(actor, move, _rows(move, center_ahead_m(actor), contact_s) if moves else ())
+    return Other(actor, move, _rows(move, center_ahead_m(actor), contact_s) if moves else (), actor.id)
+
+
+def background_of(script: Script, background: Background, cue: Cue) -> tuple[Other, ...]:
+    """The traffic as others: it begins with them, and behind the script it brakes to a stand in its lane."""
+    return tuple(_in_background(script, info, track, cue) for info, track in background)
+
+
+def _in_background(script: Script, info: ActorInfo, track: Trajectory, cue: Cue) -> Other:
+    move = origin_motion(info, _from_row(stopped_behind(script.graph, track, info.maneuver), cue.lead_rows))
+    moves = bool((np.hypot(*np.diff(move.points, axis=0).T) > _STILL_M).any())
+    rows = _rows(move, center_ahead_m(info), 0.0) if moves else ()
+    return Other(info, move, rows, ROLE)
+
+
+def stopped_behind(graph: LaneGraph, track: Trajectory, maneuver: str) -> Trajectory:
+    """A motion and, behind it, braking to a stand along the lanes."""
+    speed = float(track.speed_mps[-1])
+    x, y, heading = (float(v) for v in track.pose[-1])
+    way_m, lasts_s = speed**2 / (2 * BRAKES_MPS2), speed / BRAKES_MPS2
+    if lasts_s < STEP_S:
+        return track
+    t_s = np.arange(1, int(lasts_s / STEP_S) + 1) * STEP_S
+    line = continued_line(graph, Start(x, y, heading), way_m, maneuver)
+    along = arc_lengths(line)
+    at = np.clip(speed * t_s - BRAKES_MPS2 * t_s**2 / 2, 0.0, along[-1])
+    more = np.column_stack([np.interp(at, along, line[:, k]) for k in (0, 1)] + [np.interp(at, along, headings(line))])
+    pose = np.vstack((track.pose, more))
+    end = float(track.t_s[-1])
+    return track.model_copy(update={
+        "t_s": np.append(track.t_s, end + t_s), "x_m": pose[:, 0], "y_m": pose[:, 1],
+        "heading_rad": np.unwrap(pose[:, 2]),
+        "speed_mps": np.append(track.speed_mps, np.maximum(speed - BRAKES_MPS2 * t_s, 0.0)),
+    })  # fmt: skip
 
 
 def motion_of(staging: Staging, name: str, contact_s: float, after_s: float) -> Trajectory:

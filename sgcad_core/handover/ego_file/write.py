@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sgcad_core.case.driver_io import STEP_S
+from sgcad_core.case.traffic import Background
 from sgcad_core.formats.openscenario.roads.road_network import roads_of
 from sgcad_core.formats.openscenario.writing.entities import center_ahead_m, environment
 from sgcad_core.formats.openscenario.writing.header import Source, comments, file_header
@@ -20,7 +21,7 @@ from sgcad_core.formats.openscenario.writing.writer import library_version
 from sgcad_core.handover.ego_file import ego as me
 from sgcad_core.handover.ego_file.cue import Cue, cue_of
 from sgcad_core.handover.ego_file.elements import node, of_entity, of_time, position, private, speed, trigger
-from sgcad_core.handover.ego_file.others import INDENT, Other, others_of
+from sgcad_core.handover.ego_file.others import INDENT, Other, background_of, others_of
 from sgcad_core.handover.script import Staging
 from sgcad_core.records.specs import BehaviorSpec
 
@@ -41,6 +42,8 @@ class EgoFile:
     xodr: str | None = None
     version: Version = DEFAULT_VERSION
     road_file: str = "road.xodr"
+    background: Background = ()
+    """Traffic, which begins with the others; the cue does not depend on it."""
 
 
 def write_ego(staging: Staging, about: EgoFile) -> str:
@@ -53,12 +56,13 @@ def write_ego(staging: Staging, about: EgoFile) -> str:
     roads = roads_of(about.xodr) if about.xodr else None
     cue = cue_of(staging, center_ahead_m(staging.script.info(staging.ego)))
     others, move = others_of(staging, cue.contact_s, cue.lead_rows), me.ego_motion(staging, cue.contact_s)
+    others = (*others, *background_of(staging.script, about.background, cue))
     with library_version(minor):
         around = environment(about.behavior, minor)
         surroundings = None if around is None else around.get_element()
         entities = [
-            me.scenario_object(staging.script.info(name), minor, name == staging.ego)
-            for name in (staging.ego, *(other.info.id for other in others))
+            me.scenario_object(staging.script.info(staging.ego), minor, True),
+            *(me.scenario_object(other.info, minor, False) for other in others),
         ]
     declared = _parameters(staging, cue, others, surroundings)
     starts = [me.start_actions(move, roads, minor), *(_waits(other, roads, minor) for other in others)]
@@ -90,7 +94,7 @@ def _parameters(staging: Staging, cue: Cue, others: Sequence[Other], surrounding
         told[CLEARANCE] = cue.clearance_m
     for other in others:
         if other.rows:
-            told |= {f"{other.info.id}_TimeScale": 1.0, f"{other.info.id}_TimeOffset": 0.0}
+            told |= {f"{other.clock}_TimeScale": 1.0, f"{other.clock}_TimeOffset": 0.0}
     road = None if surroundings is None else surroundings.find("RoadCondition")
     if road is not None:
         told[FRICTION] = float(road.get("frictionScaleFactor", "1"))

@@ -77,3 +77,13 @@ def test_a_result_without_a_scenario_has_no_account_to_tell():
 def test_several_cases_and_refused_ones_are_left_to_the_table():
     assert case_in_words.lines([RESULT, RESULT]) == []
     assert case_in_words.lines([RESULT | {"status": "refused"}]) == []
+
+
+def test_traffic_is_told_in_a_line():
+    told = {"density": "light", "per_km_and_lane": 5.0, "vehicles": [{}, {}], "moved": 1, "notes": ["limited"],
+            "removed": {"found no room": 2}}  # fmt: skip
+    assert case_in_words.lines([RESULT | {"traffic": told}])[-1] == (
+        "traffic: 2 vehicles, light (5 per km and lane); left out: 2 found no room; 1 began elsewhere to keep clear; "
+        "limited"
+    )
+    assert case_in_words.lines([RESULT | {"traffic": {"lacks": "no lane"}}])[-1] == "traffic: none (no lane)"

@@ -1,21 +1,25 @@
 """`sgcad export` and `sgcad video` on a case that the product made: files, their content, errors."""
 
+import json
 import pickle
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+import sumo
 from PIL import Image
 from typer.testing import CliRunner
 
 from flows.case.run_case import run_case
+from flows.case_files.case_folder import read_trajectories
 from flows.case_files.find_cases import cases_of
 from flows.cli import app
 from flows.export.film import film
 from flows.export.finished_case import FinishedCase
+from flows.player.player_page import DATA
 from sgcad_core.config import load
-from sgcad_core.errors import ConfigError, MissingTool
+from sgcad_core.errors import ConfigError, MissingTool, NoTraffic
 from sgcad_core.formats.openscenario.check import xosc_findings
 from sgcad_core.formats.xml import parse_xml
 
@@ -155,3 +159,94 @@ def test_film_without_ffmpeg_says_what_to_install(made, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     with pytest.raises(MissingTool, match=r"sg-cadvlm\[video\]"):
         film(made, tmp_path, ["mp4"], 20)
+
+
+# ------------------------------------------------------------------ traffic
+def test_traffic_stands_in_every_file_of_its_folder_and_the_case_stays(made):
+    before = {f.name: f.read_bytes() for f in made.iterdir() if f.is_file()}
+    files = {f.rsplit("/", 1)[1] for f in exported(made, "--traffic", "light", "--ego", "V2")}
+    folder = made / "export" / "traffic" / "light"
+    assert files == {f.name for f in folder.iterdir()}
+    told = json.loads((folder / "traffic.json").read_text())
+    names = {vehicle["id"] for vehicle in told["vehicles"]}
+    assert names
+    assert {t.actor for t in read_trajectories(folder / "trajectories.csv")} == {"V1", "V2"}
+    assert {t.actor for t in read_trajectories(folder / "trajectories.csv", "traffic")} == names
+    for name in ("scenario.xosc", "ego.xosc", "ego_carla.xosc"):
+        text = (folder / name).read_text()
+        assert xosc_findings(text, (folder / "road.xodr").read_text()) == []
+        assert {o.get("name") for o in parse_xml(text, name).iterfind("Entities/ScenarioObject")} >= names
+    routes = parse_xml((folder / "traffic.rou.xml").read_text(), "routes")
+    assert {v.get("id") for v in routes.iterfind("vehicle")} == names
+    page = json.loads(DATA.search((folder / "player.html").read_text())[1])
+    assert ({v["id"] for v in page["traffic"]}, {a["id"] for a in page["actors"]}) == (names, {"V1", "V2"})
+    assert {f.name: f.read_bytes() for f in made.iterdir() if f.is_file()} == before
+
+
+def test_sumo_runs_the_routes_of_the_traffic(made, tmp_path):
+    exported(made, "--traffic", "light")
+    folder = made / "export" / "traffic" / "light"
+    count = len(json.loads((folder / "traffic.json").read_text())["vehicles"])
+    program = [f"{sumo.SUMO_HOME}/bin/sumo", "-n", folder / "road.net.xml", "-r", folder / "traffic.rou.xml"]
+    done = subprocess.run(
+        [*program, "--tripinfo-output", tmp_path / "trips.xml"], env={"SUMO_HOME": sumo.SUMO_HOME}, check=False
+    )
+    assert done.returncode == 0
+    assert (tmp_path / "trips.xml").read_text().count("<tripinfo ") == count
+
+
+def test_traffic_of_the_ego_file_begins_with_the_others_and_comes_to_a_stand(made):
+    exported(made, "--traffic", "light", "--ego", "V2")
+    root = parse_xml((made / "export" / "traffic" / "light" / "ego.xosc").read_text(), "made")
+    declared = [p.get("name") for p in root.iterfind("ParameterDeclarations/ParameterDeclaration")]
+    assert declared.count("traffic_TimeScale") == 1
+    events = {e.get("name"): e for e in root.iter("Event")}
+    moving = next(name for name in events if name.startswith("traffic"))
+    conditions = [len(e.findall(".//StartTrigger//Condition")) for e in (events["V1_comes"], events[moving])]
+    assert conditions[0] == conditions[1] > 1
+    ends = [float(v.get("x")) for v in events[moving].iterfind(".//Vertex/Position/WorldPosition")][-2:]
+    assert abs(ends[1] - ends[0]) < 2.0
+
+
+def test_no_such_density_is_named(made):
+    ended = run("export", made, "--traffic", "heavy")
+    assert isinstance(ended.exception, ConfigError)
+    assert "--traffic heavy: no such density; densities: light, dense, none" in str(ended.exception)
+
+
+def test_a_config_may_ask_for_traffic_and_the_crash_is_judged_without_it(made, tmp_path):
+    (tmp_path / "yield.txt").write_text(REPORT)
+    (case,) = cases_of([tmp_path / "yield.txt"])
+    ended = run_case(load("template.yaml", ("tracker=none", "traffic=light")), case, tmp_path / "runs", "with")
+    plain = json.loads((made / "result.json").read_text())
+    for same in ("actors", "collision", "account", "rules", "impact"):
+        assert ended.result[same] == plain[same], same
+    folder = tmp_path / "runs" / "template" / "yield"
+    one, two = (json.loads((f / "metrics.json").read_text()) for f in (folder, made))
+    assert one == two
+    assert len(ended.result["traffic"]["vehicles"]) == len(FinishedCase(folder).background) > 0
+    assert {t.actor for t in FinishedCase(folder).script.trajectories} == {"V1", "V2"}
+    assert "traffic1" in (folder / "scenario.xosc").read_text()
+    assert "traffic1" in (folder / "ego.xosc").read_text()
+    count = len(ended.result["traffic"]["vehicles"])
+    exported(folder, "--format", "scenarionet,commonroad")
+    record = pickle.loads((folder / "export" / "scenarionet" / "sd_sgcad_v1_yield.pkl").read_bytes())  # noqa: S301
+    assert len(record["tracks"]) == 2 + count
+    root = parse_xml((folder / "export" / "commonroad" / "yield.xml").read_text(), "made")
+    assert len(root.findall("dynamicObstacle")) == 1 + count
+    exported(folder, "--traffic", "dense")  # in the place of the light one
+    assert "<!-- Source" in (folder / "export" / "traffic" / "dense" / "scenario.xosc").read_text()
+
+
+def test_where_there_is_no_room_the_case_stays_and_says_so(tmp_path):
+    (tmp_path / "lot.txt").write_text(
+        "The crash occurred in a parking lot. V1, a car, was traveling eastbound in an aisle. V2, a car, was traveling "
+        "northbound in the parking lot. The front of V1 struck the left side of V2."
+    )
+    (case,) = cases_of([tmp_path / "lot.txt"])
+    ended = run_case(load("template.yaml", ("tracker=none", "traffic=light")), case, tmp_path / "runs", "lot")
+    assert ended.result["status"] == "generated"
+    assert "the network has no lane for traffic" in ended.result["traffic"]["lacks"]
+    assert (tmp_path / "runs" / "template" / "lot" / "player.html").exists()
+    told = run("export", tmp_path / "runs" / "template" / "lot", "--traffic", "light")
+    assert isinstance(told.exception, NoTraffic)
