@@ -84,7 +84,7 @@ def untold_swerves(made: ExecutedCase, notes: Sequence[Note]) -> Iterator[Item]:
         if note.kind == "plan" and words and not leaves and made.reading.crash.near_crash is None:
             yield Item(
                 kind="lacks", field=f"vehicles.{note.subject}.driving", subject=note.subject, value=None,
-                text=f"{note.subject} in ordinary driving", reason=f"it {words}, which nobody tells",
+                text=f"{note.subject} in ordinary driving", reason=f"it {words}, which is not told",
             )  # fmt: skip
 
 

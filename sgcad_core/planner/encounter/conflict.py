@@ -25,6 +25,7 @@ from sgcad_core.planner.encounter.motion_options import (
 )
 from sgcad_core.planner.encounter.pairing import Encounter, Stage, Ways, cannot, search
 from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.lines.box_angles import ASKEW
 from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.departures import departs, departure_station, side_of
 from sgcad_core.planner.lines.told_moves import with_room
@@ -192,9 +193,9 @@ def _unturned(role: Role) -> list[Option]:
 
 
 def _as_told(role: Role) -> list[Option]:
-    """The options in which it neither swerves nor skids, unless that is told."""
+    """The options in which it neither swerves, skids nor stands askew, unless that is told."""
     if is_standing(role):
-        return options(role)
+        return [option for option in options(role) if option.twist.note != ASKEW]
     return [option for option in options(role) if not option.twist.angle_rad and option.drift.note not in UNTOLD]
 
 

@@ -24,7 +24,7 @@ oncoming traffic: that is odd driving."""
 
 
 def implied_crossings(role: Role) -> list[Drift]:
-    """Changes of line that nobody tells, and that the told lanes imply where an end is told to meet a flank."""
+    """Untold changes of line that the told lanes imply, where an end is told to meet a flank."""
     aside = role.place.aside_m
     if not end_meets_flank(role) or abs(aside) < 1.0 or is_standing(role) or role.actor.maneuver in TURNING:
         return []
