@@ -16,12 +16,12 @@ import numpy as np
 from sgcad_core.case.density import PER_KM, Density
 from sgcad_core.case.traffic import Entrant
 from sgcad_core.geometry.plane import resample
-from sgcad_core.kinds import ACTORS
+from sgcad_core.kinds import ACTORS, ALLEY, DRIVEWAY
 from sgcad_core.roads.lane_graph import Connection, Edge, Lane, LaneGraph
 
 KINDS = tuple(record.id for record in ACTORS.values() if record.usual)
 """Cars, SUVs, pickups and vans, drawn evenly."""
-QUIET_KINDS = ("driveway", "alley")
+QUIET_KINDS = (DRIVEWAY, ALLEY)
 """Kinds of roads without through traffic."""
 LEAST_LANE_M = 15.0
 JITTER = 0.25
