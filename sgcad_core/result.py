@@ -16,10 +16,9 @@ from sgcad_core.account import Account, Note, account_of
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.notes import notes_of
 from sgcad_core.account.second_opinion import disagreements_of
-from sgcad_core.case.records import Execution, Fact, Generation, RoadNetwork, Scenario, StageOutcome
+from sgcad_core.case.records import Execution, Fact, Generation, RoadNetwork, Scenario, StageOutcome, sizes_of
 from sgcad_core.execution.compare_executions import Judgement
 from sgcad_core.execution.contact import avoided, closest_approach, first_with, realised
-from sgcad_core.execution.playback import sizes_of
 from sgcad_core.execution.scenario_facts import actor_facts_written, road_facts_written
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.reading.inference.reading_limits import limit_notes
@@ -188,7 +187,7 @@ def _subject_untouched(record: CaseRecord) -> bool:
     subject = crash.vehicles[0].id if crash.vehicles else ""
     if all(subject not in (c.striker, c.struck) for c in crash.contacts):
         return False
-    sizes = sizes_of(record.scenario)
+    sizes = sizes_of(record.scenario.actors)
     mine = next((t for t in record.execution.trajectories if t.actor == subject), None)
     others = [t for t in record.execution.trajectories if t.actor != subject]
     return mine is not None and first_with(mine, others, sizes) is None
@@ -224,7 +223,7 @@ def _near_crash(scenario: Scenario | None, execution: Execution | None) -> dict[
     if scenario is None or near is None:
         return None
     pair = near.conflict.striker, near.conflict.struck
-    closest = closest_approach(execution.trajectories, sizes_of(scenario), pair) if execution else None
+    closest = closest_approach(execution.trajectories, sizes_of(scenario.actors), pair) if execution else None
     declared = near.model_dump(mode="json", exclude={"clearance_m"})
     basis = "default" if near.clearance_m is None else "told"
     return {

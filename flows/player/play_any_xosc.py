@@ -20,7 +20,7 @@ from flows.case_files.find_cases import safe_id
 from flows.player import player_page
 from flows.player.player_data import COLORS, Mover, View
 from flows.player.road_shapes import Drawing, Strip
-from sgcad_core.case.records import ActorInfo, CrashReport, Execution, Finding, ObservedContact, Scenario
+from sgcad_core.case.records import ActorInfo, CrashReport, Execution, Finding, ObservedContact, Scenario, sizes_of
 from sgcad_core.errors import ConfigError
 from sgcad_core.execution.contact import first_contact
 from sgcad_core.formats.openscenario.playing.body import Body
@@ -61,7 +61,7 @@ def _parameters(given: Sequence[str]) -> dict[str, str]:
 def _one(variation: Variation, folder: Path, maps: Sequence[Path], until_s: float, of: int) -> None:
     played, xodr = play_file(variation, maps, until_s=until_s)
     actors = [_info(name, played.bodies[name]) for name in (t.actor for t in played.trajectories)]
-    sizes = {a.id: (a.length_m, a.width_m) for a in actors}
+    sizes = sizes_of(actors)
     execution = Execution(
         simulator="player", trajectories=played.trajectories, contact=first_contact(played.trajectories, sizes)
     )

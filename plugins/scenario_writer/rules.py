@@ -10,11 +10,10 @@ from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from plugins.scenario_writer._planned import PlannedWriter, roads_of
-from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork, Scenario, Severity
+from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork, Scenario, Severity, sizes_of
 from sgcad_core.execution.contact import first_contact
 from sgcad_core.execution.mending import mended
 from sgcad_core.execution.plan_score import least_doubted
-from sgcad_core.execution.playback import sizes_of
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask
@@ -82,7 +81,7 @@ class Rules(PlannedWriter):
         """The scenario with the change that brings its contact about; itself where none does."""
         if scenario.behavior is None or network.net_xml is None:
             return scenario
-        seen = first_contact(scenario.planned, sizes_of(scenario))
+        seen = first_contact(scenario.planned, sizes_of(scenario.actors))
         graph = parse_net(network.net_xml)
         found = mended(scenario.behavior, graph, seen, may_skid=reading.lost_control, courses=facts.driven)
         if found is None:

@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
+from xml.sax.saxutils import quoteattr
 
 import libsumo
 import numpy as np
@@ -21,15 +22,14 @@ from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import Floats
 from sgcad_core.case.traffic import Driven, Entrant, TrafficOrder
 from sgcad_core.errors import SimulationFailed
+from sgcad_core.formats.sumo.traffic_routes import LANE_KEEPING
 from sgcad_core.geometry.distances import nearest_on
 from sgcad_core.geometry.plane import Size, arc_lengths, headings, resample, world_points
 
 _OPTIONS = ("--collision.action", "none", *AS_TOLD, *QUIET, "--no-warnings", "true")
 _KIND = "traffic"
-_KEEPS_LANE = (
-    f'<routes><vType id="{_KIND}" minGap="2.5" lcStrategic="-1" lcCooperative="-1" lcSpeedGain="0" lcKeepRight="0"/>'
-    "</routes>"
-)
+_MODEL = {"id": _KIND, "minGap": "2.5", **LANE_KEEPING}
+_KEEPS_LANE = f"<routes><vType {' '.join(f'{name}={quoteattr(value)}' for name, value in _MODEL.items())}/></routes>"
 """SUMO's Krauss model with its usual parameters; it never changes lanes, which SUMO does at a stroke."""
 _REACH_M = 1.5
 """Half the strip that a lane's traffic takes: half a vehicle and half a metre."""

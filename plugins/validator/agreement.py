@@ -7,10 +7,18 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from sgcad_core.case.records import ActorInfo, Evidence, Finding, ObservedContact, RoadNetwork, Scenario, Trajectory
+from sgcad_core.case.records import (
+    ActorInfo,
+    Evidence,
+    Finding,
+    ObservedContact,
+    RoadNetwork,
+    Scenario,
+    Trajectory,
+    sizes_of,
+)
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.execution.contact import CLEARANCE_TOLERANCE_M, avoided, closest_approach, first_contact, realised
-from sgcad_core.execution.playback import sizes_of
 from sgcad_core.execution.starts import START_M, off_lane
 from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.agreement import network_disagreements
@@ -47,7 +55,7 @@ class Agreement(Validator):
         found += _contact_actors(artifact)
         if found:
             return found
-        contact = first_contact(motions, sizes_of(artifact))
+        contact = first_contact(motions, sizes_of(artifact.actors))
         found += _starts(artifact.actors, motions, graph, contact) if graph else []
         return [*found, *self._contact(artifact.declared, contact), *self._near_crash(artifact, motions, contact)]
 
@@ -68,7 +76,7 @@ class Agreement(Validator):
         if near is None:
             return
         pair = near.conflict.striker, near.conflict.struck
-        closest = closest_approach(motions, sizes_of(scenario), pair)
+        closest = closest_approach(motions, sizes_of(scenario.actors), pair)
         if seen is not None:
             remedy = "change the evasion, lanes or maneuvers so that nobody touches anybody"
             yield _finding("a near crash ends in a contact", "near_crash", _seen(seen), remedy, self.unrealised)

@@ -10,9 +10,8 @@ import numpy as np
 
 from sgcad_core.account.records import Item
 from sgcad_core.account.words import phrase
-from sgcad_core.case.records import Execution, ObservedContact, RoadNetwork, Scenario, Trajectory
+from sgcad_core.case.records import Execution, ObservedContact, RoadNetwork, Scenario, Trajectory, sizes_of
 from sgcad_core.execution.contact import observe
-from sgcad_core.execution.playback import sizes_of
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.geometry.plane import Size
 from sgcad_core.metrics.labels.motion_label_match import Path
@@ -47,7 +46,7 @@ class ExecutedCase:
     @cached_property
     def sizes(self) -> Mapping[str, Size]:
         """Length and width by actor, metres."""
-        return sizes_of(self.scenario)
+        return sizes_of(self.scenario.actors)
 
     @cached_property
     def tracks(self) -> Mapping[str, Trajectory]:

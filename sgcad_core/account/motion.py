@@ -14,7 +14,7 @@ import numpy as np
 from sgcad_core.account.inputs import ExecutedCase, is_stated
 from sgcad_core.account.records import Item
 from sgcad_core.geometry.plane import wrap_angle
-from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP
+from sgcad_core.kinds import ALLEY, CHANGES, DRIVEWAY, PARKING_LOT, RAMP
 from sgcad_core.metrics.labels.course_label_match import vehicle_marks
 from sgcad_core.metrics.labels.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
 from sgcad_core.metrics.labels.observed_crash import VehicleMotion
@@ -134,11 +134,11 @@ def _lane(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     """A numbered lane (1 = at the right curb, -1 = the leftmost), one by its side, or a turn lane."""
     vehicle = made.reading.crash.vehicle(who)
     side = told.side if vehicle and (told := told_lane(vehicle)) else 0
-    told = ToldLane(value, None, side) if isinstance(value, int) else ToldLane(None, str(value), side)
+    told = ToldLane.of(value, side)
     if told.number is None and told.word not in LANE_WORDS:
         return None
     steps = lane_steps(made.graph, VehicleMotion(made.crash, who).before)
-    first = next((k for k, name in enumerate(steps.lanes) if name), None)
+    first = steps.first
     if first is None and told.word in TURN_LANES:
         return None  # it stands in its turn, in the junction
     at = position(made.graph, steps.lanes[first]) if first is not None else None
@@ -225,12 +225,12 @@ def _departs(made: ExecutedCase, who: str, value: Value) -> Comparison:
 def _to_lane(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     """Whether a change of lanes leads into the told one: it lies beside the lane in which the vehicle starts."""
     vehicle = made.reading.crash.vehicle(who)
-    side = {"lane_change_left": 1, "lane_change_right": -1}.get(vehicle.maneuver if vehicle else "", 0)
+    side = CHANGES.get(vehicle.maneuver, 0) if vehicle else 0
     if not side:
         return None
-    told = ToldLane(value, None, side) if isinstance(value, int) else ToldLane(None, str(value), side)
+    told = ToldLane.of(value, side)
     steps = lane_steps(made.graph, VehicleMotion(made.crash, who).before)
-    first = next((k for k, name in enumerate(steps.lanes) if name), None)
+    first = steps.first
     at = position(made.graph, steps.lanes[first], side) if first is not None else None
     seen = f"its change leads into lane {at.place} of {at.lanes}" if at else "its change leads into no lane"
     return Comparison(told.taken(made.graph, steps), at.place if at else None, seen)

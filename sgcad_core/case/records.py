@@ -6,7 +6,7 @@ counter-clockwise from east; the point of an actor is the centre of its bounding
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, Literal
 
 import numpy as np
@@ -148,6 +148,11 @@ class ActorInfo(Record):
     def record(self) -> ActorRecord:
         """What is known of its kind."""
         return actor_kind(self.type)
+
+
+def sizes_of(actors: Iterable[ActorInfo]) -> dict[str, tuple[float, float]]:
+    """Length and width of each by its id, metres."""
+    return {actor.id: (actor.length_m, actor.width_m) for actor in actors}
 
 
 class Trajectory(Record):

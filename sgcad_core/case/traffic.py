@@ -17,6 +17,9 @@ from sgcad_core.record_base import Record
 ROLE = "traffic"
 """What the column `role` of trajectories.csv, properties of entities and pages call a background vehicle."""
 
+BRAKING_MPS2 = 4.5
+"""By which its vehicles stop where nothing drives them: SUMO's usual deceleration, on which their gaps are built."""
+
 
 @dataclass(frozen=True, eq=False)
 class CrashScene:

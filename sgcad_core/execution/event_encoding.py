@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory
+from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory, sizes_of
 from sgcad_core.execution.contact import first_contact
 from sgcad_core.formats.opendrive.signals import Controller
 from sgcad_core.formats.openscenario.playing.player import play
@@ -65,7 +65,7 @@ def _astray(
     by_name = {t.actor: t for t in played}
     until_s = contact.t_s - 1e-6 if contact else float(planned[0].t_s[-1])
     astray = {t.actor for t in planned if _away_m(t, by_name[t.actor], until_s) > ASTRAY_M}
-    seen = first_contact(played, {a.id: (a.length_m, a.width_m) for a in actors})
+    seen = first_contact(played, sizes_of(actors))
     if contact and not _same(contact, seen):
         astray |= {contact.actor, contact.other}
     return frozenset(astray)

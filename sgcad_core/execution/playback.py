@@ -7,11 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sgcad_core.case.records import Execution, RoadNetwork, Scenario, Trajectory
+from sgcad_core.case.records import Execution, RoadNetwork, Scenario, Trajectory, sizes_of
 from sgcad_core.errors import InvalidOutput, SimulationFailed
 from sgcad_core.execution.contact import first_contact
 from sgcad_core.formats.openscenario.playing.player import play
-from sgcad_core.geometry.plane import Size
 
 
 def played(scenario: Scenario, network: RoadNetwork) -> tuple[Trajectory, ...]:
@@ -31,12 +30,7 @@ def played(scenario: Scenario, network: RoadNetwork) -> tuple[Trajectory, ...]:
     return tuple(found[name] for name in names)
 
 
-def sizes_of(scenario: Scenario) -> dict[str, Size]:
-    """Length and width by actor, metres."""
-    return {actor.id: (actor.length_m, actor.width_m) for actor in scenario.actors}
-
-
 def execution_of(simulator: str, scenario: Scenario, seen: Sequence[Trajectory], log: str = "") -> Execution:
     """An execution with its first contact."""
-    contact = first_contact(seen, sizes_of(scenario))
+    contact = first_contact(seen, sizes_of(scenario.actors))
     return Execution(simulator=simulator, trajectories=tuple(seen), contact=contact, log=log)

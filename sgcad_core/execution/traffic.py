@@ -14,7 +14,7 @@ import numpy as np
 
 from sgcad_core.case.density import Density
 from sgcad_core.case.driver_io import STEP_S
-from sgcad_core.case.records import ActorInfo, Floats, Trajectory
+from sgcad_core.case.records import ActorInfo, Floats, Trajectory, sizes_of
 from sgcad_core.case.traffic import CrashScene, Driven, Entrant, Fixture, Traffic, TrafficOrder
 from sgcad_core.errors import NoTraffic
 from sgcad_core.execution.contact import first_contact
@@ -77,7 +77,7 @@ def _fixtures(scene: CrashScene) -> tuple[Fixture, ...]:
 
 def _middle(scene: CrashScene) -> tuple[float, float]:
     """Where the crash is: the first contact, without one the middle of all paths."""
-    sizes = {a.id: (a.length_m, a.width_m) for a in scene.actors}
+    sizes = sizes_of(scene.actors)
     contact = first_contact(scene.trajectories, sizes)
     if contact is None:
         points = np.vstack([t.points for t in scene.trajectories])

@@ -13,11 +13,11 @@ import numpy as np
 
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import Floats
+from sgcad_core.case.traffic import BRAKING_MPS2
 
 FARTHEST_M = 140.0
 """Checks of scenario files allow 150 m beyond the network."""
 PLACE_M = 8.0
-BRAKING_MPS2 = 4.5
 STANDS_MPS = 1e-3
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sgcad_core.case.density import Density
-from sgcad_core.case.records import Trajectory
+from sgcad_core.case.records import Trajectory, sizes_of
 from sgcad_core.case.traffic import CrashScene, Traffic
 from sgcad_core.errors import InvalidOutput, NoTraffic
 from sgcad_core.execution.contact import first_contact
@@ -55,16 +55,12 @@ def _written(scene: CrashScene, xosc: str, xodr: str | None, traffic: Traffic) -
         text = with_background(xosc, traffic.vehicles, [_coarse(track) for track in traffic.trajectories])
         played = {track.actor: track for track in play(text, xodr)}
         seen = tuple(played[track.actor] for track in traffic.trajectories)
-        touching = set(_touching(scene, seen, _sizes(traffic)))
+        touching = set(_touching(scene, seen, sizes_of(traffic.vehicles)))
         if not touching:
             _check(scene, played)
             return CrashWithTraffic(text, traffic.model_copy(update={"trajectories": seen}))
         traffic = _without(traffic, touching)
     raise NoTraffic(f"{scene.case}: no vehicle keeps clear of the crash as the scenario is played: traffic none")
-
-
-def _sizes(traffic: Traffic) -> dict[str, Size]:
-    return {vehicle.id: (vehicle.length_m, vehicle.width_m) for vehicle in traffic.vehicles}
 
 
 def _coarse(track: Trajectory) -> Trajectory:
@@ -76,7 +72,7 @@ def _coarse(track: Trajectory) -> Trajectory:
 
 def _touching(scene: CrashScene, seen: Sequence[Trajectory], sizes: Mapping[str, Size]) -> Iterator[str]:
     """Ids of vehicles that come too near to an actor, or touch a vehicle before them."""
-    actors = {actor.id: (actor.length_m, actor.width_m) for actor in scene.actors}
+    actors = sizes_of(scene.actors)
     for number, track in enumerate(seen):
         near = (_least(track, sizes[track.actor], t, actors[t.actor], PLAYED_CLEAR_M) for t in scene.trajectories)
         touch = (_least(track, sizes[track.actor], t, sizes[t.actor], 0.0) for t in seen[:number])
@@ -91,7 +87,7 @@ def _least(a: Trajectory, a_size: Size, b: Trajectory, b_size: Size, near_m: flo
 
 def _check(scene: CrashScene, played: Mapping[str, Trajectory]) -> None:
     """Raises InvalidOutput where the actors' first contact is another one with the traffic in the file."""
-    sizes = {actor.id: (actor.length_m, actor.width_m) for actor in scene.actors}
+    sizes = sizes_of(scene.actors)
     told = first_contact(scene.trajectories, sizes)
     now = first_contact([played[actor.id] for actor in scene.actors], sizes)
     if told != now:

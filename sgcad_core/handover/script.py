@@ -15,7 +15,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from sgcad_core.case.driver_io import STEP_S, Way
-from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory
+from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory, sizes_of
 from sgcad_core.errors import ConfigError
 from sgcad_core.execution.contact import first_with
 from sgcad_core.geometry.plane import Floats, Size, arc_lengths
@@ -60,7 +60,7 @@ class Script:
     @property
     def sizes(self) -> dict[str, Size]:
         """Length and width by actor."""
-        return {a.id: (a.length_m, a.width_m) for a in self.actors}
+        return sizes_of(self.actors)
 
     @property
     def friction_mps2(self) -> float:

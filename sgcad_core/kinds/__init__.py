@@ -21,12 +21,13 @@ from sgcad_core.kinds.junctions import (  # fmt: skip
     junction_kind,
     unsupported_kind,
 )
-from sgcad_core.kinds.maneuvers import CRASH_ROLES, MANEUVERS, CrashRole, Maneuver
+from sgcad_core.kinds.maneuvers import CHANGES, CRASH_ROLES, MANEUVERS, CrashRole, Maneuver
 from sgcad_core.kinds.roads import ALLEY, DRIVEWAY, JOINING, RAMP, ROAD, ROADS, UNPAINTED, RoadKind
 
 __all__ = [
     "ACTORS",
     "ALLEY",
+    "CHANGES",
     "CRASH_ROLES",
     "DRIVEWAY",
     "FOUR",

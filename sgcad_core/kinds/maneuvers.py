@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal, get_args
 
 Maneuver = Literal[
@@ -10,6 +11,8 @@ Maneuver = Literal[
     "departing_road_left", "departing_road_right", "backing", "other",
 ]  # fmt: skip
 MANEUVERS: tuple[Maneuver, ...] = get_args(Maneuver)
+CHANGES: Mapping[Maneuver, int] = {"lane_change_left": 1, "lane_change_right": -1}
+"""Maneuvers into a lane beside the own one, and its side: 1 to the left."""
 CrashRole = Literal["initiator", "responder", "bystander"]
 """Part in a crash: made the conflict, was left to deal with it, took no part in the first contact."""
 CRASH_ROLES: tuple[CrashRole, ...] = get_args(CrashRole)

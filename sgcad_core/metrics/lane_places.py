@@ -48,6 +48,11 @@ class LaneSteps(NamedTuple):
         """By sample the place in words."""
         return tuple(PLACES[code] for code in self.codes)
 
+    @property
+    def first(self) -> int | None:
+        """The first sample in a lane; None where none is."""
+        return next((k for k, name in enumerate(self.lanes) if name), None)
+
     def in_turn(self) -> str:
         """The lanes and places in their order, each with its seconds: "E_0 2.1 s, opposing W_1 1.4 s"."""
         shown = [

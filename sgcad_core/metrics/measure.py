@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from sgcad_core.case.records import Execution, Floats, Scenario, Trajectory
+from sgcad_core.case.records import Execution, Floats, Scenario, Trajectory, sizes_of
 from sgcad_core.metrics import conflict, criticality, displacement, precontact_metrics
 from sgcad_core.metrics.conflict import Encroachment
 from sgcad_core.metrics.swept_cells import Track
@@ -23,7 +23,7 @@ from sgcad_core.metrics.thresholds import Thresholds
 def measure(execution: Execution, scenario: Scenario, thresholds: Thresholds | None = None) -> dict[str, Any]:
     """Measure an execution: {"ego", "thresholds", "paper": {...}, "exact": {...}}; SI units, JSON-able."""
     limits = thresholds or Thresholds()
-    sizes = {a.id: (a.length_m, a.width_m) for a in scenario.actors}
+    sizes = sizes_of(scenario.actors)
     tracks = {t.actor: _track(t, sizes.get(t.actor, (4.6, 1.8))) for t in execution.trajectories}
     ego = ego_of(tracks)
     motion = {t.actor: t for t in execution.trajectories}

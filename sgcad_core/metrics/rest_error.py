@@ -153,8 +153,7 @@ def _is_lane(told: int | RestLane | None, lane: OfLane) -> bool:
         return False
     if told is None:
         return True
-    number, word = (told, None) if isinstance(told, int) else (None, told)
-    return ToldLane(number, word).is_at(lane)
+    return ToldLane.of(told).is_at(lane)
 
 
 def _own_lanes(surface: RoadSurface, began: Floats) -> NDArray[np.bool_]:

@@ -84,8 +84,7 @@ def _seen(one: VehicleMotion, places: NDArray[np.str_], move: Move, at: int) -> 
     """The first sample from one on by which a move is made."""
     aside, rest = one.aside[at:], places[at:]
     if move.kind == "departs":
-        off = np.isin(rest, [*_OFF])
-        shown = off & np.array([_fits(move, one, "left" if left > 0 else "right") for left in aside])
+        shown = np.isin(rest, [*_OFF]) & np.where(aside > 0, _fits(move, one, "left"), _fits(move, one, "right"))
     elif move.kind == "returns":
         away = np.maximum.accumulate(np.abs(aside)) - np.abs(aside) > _STEERS_M
         shown = np.isin(rest, [*_ON, "junction"]) & away

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from sgcad_core.kinds import CHANGES
 from sgcad_core.metrics.lane_places import LaneSteps
 from sgcad_core.reading.crash_facts import VehicleFacts
-from sgcad_core.reading.layout.lanes_used import CENTER, CHANGES
+from sgcad_core.reading.layout.lanes_used import CENTER
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.lane_positions import Position, position
 
@@ -26,6 +27,13 @@ class ToldLane(NamedTuple):
     side: int = 0
     """Of a lane change into this lane: the side to which it leads (1: left); 0: the vehicle is in it before."""
 
+    @classmethod
+    def of(cls, value: object, side: int = 0) -> ToldLane:
+        """A lane as a fact tells it, by number or word."""
+        return (
+            cls(value, None, side) if isinstance(value, int) else cls(None, None if value is None else str(value), side)
+        )
+
     @property
     def center(self) -> bool:
         """Whether it is a two-way left-turn lane."""
@@ -40,7 +48,7 @@ class ToldLane(NamedTuple):
 
     def taken(self, graph: LaneGraph, steps: LaneSteps) -> bool:
         """Whether the first lane that a motion is on is this one."""
-        first = next((k for k, name in enumerate(steps.lanes) if name), None)
+        first = steps.first
         if first is None:
             return False
         if steps.places[first] == "center_lane":

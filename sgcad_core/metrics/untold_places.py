@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sgcad_core.case.records import ActorInfo, Trajectory
+from sgcad_core.case.records import ActorInfo, Trajectory, sizes_of
 from sgcad_core.kinds import Maneuver, actor_kind
 from sgcad_core.metrics.drivability import STEP_S, first_touches
 from sgcad_core.metrics.labels.observed_crash import BEFORE_S
@@ -60,7 +60,7 @@ def untold_places(
     `lost`: the report tells a loss of control, of whichever vehicle.
     """
     infos = {actor.id: actor for actor in actors}
-    touches = first_touches(motions, {a.id: (a.length_m, a.width_m) for a in actors})
+    touches = first_touches(motions, sizes_of(actors))
     ends = min(touches.values(), default=None)
     for motion in motions:
         info = infos.get(motion.actor)

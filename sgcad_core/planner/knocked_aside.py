@@ -134,19 +134,24 @@ def _thrown(scene: Scene, strike: Strike, place: _Place) -> Track:
     poses = np.empty((scene.count, 3))
     poses[: k + 1] = _beside(driven[k], place.ahead_m, place.left_m, turn)
     poses[:k] += _walked(strike, poses[k], k)
-    grazed = is_beside(place.side)
-    for j in range(1, 1 if strike.thing.firm else _ASIDE + 1):
-        share = 1.0 if grazed else j / _ASIDE
-        base = driven[k] if grazed else driven[min(k + j, scene.count - 1)]
-        poses[min(k + j, scene.count - 1)] = _beside(base, place.ahead_m, place.left_m + share * place.outward_m, turn)
-    last = min(k + _ASIDE, scene.count - 1)
     if strike.thing.firm:
         poses[k:] = poses[k]
     else:
-        poses[last:] = poses[last] if grazed else poses[last] + _slide(driven, k, place, scene.count - last)
+        _throw(poses, driven, place, turn)
     track = standing_track(scene, strike.thing, poses[k])
     track.poses, track.driven, track.hit = poses, poses, k
     return track
+
+
+def _throw(poses: Floats, driven: Floats, place: _Place, turn: float) -> None:
+    """Writes how a thing is thrown aside behind the sample of its contact, and slides to rest."""
+    k, end, grazed = place.sample, len(poses) - 1, is_beside(place.side)
+    for j in range(1, _ASIDE + 1):
+        share = 1.0 if grazed else j / _ASIDE
+        base = driven[k] if grazed else driven[min(k + j, end)]
+        poses[min(k + j, end)] = _beside(base, place.ahead_m, place.left_m + share * place.outward_m, turn)
+    last = min(k + _ASIDE, end)
+    poses[last:] = poses[last] if grazed else poses[last] + _slide(driven, k, place, len(poses) - last)
 
 
 def _beside(pose: Floats, ahead_m: float, left_m: float, turn: float) -> Floats:

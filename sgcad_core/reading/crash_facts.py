@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from sgcad_core.kinds import actor_kind
+from sgcad_core.kinds import CHANGES, actor_kind
 from sgcad_core.reading.actors.people_objects import OtherFacts, WalkDirection, others, side_facing
 from sgcad_core.reading.actors.vehicles import VehicleDescription
-from sgcad_core.reading.contacts.contact_records import ContactFacts
+from sgcad_core.reading.contacts.contact_records import ContactFacts, leading_end
 from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.inference.gaps import Gap
@@ -160,7 +160,7 @@ def _vehicle(
 
 def _lane_before(motion: VehicleMotion, maneuver: Maneuver) -> int | None:
     """The lane beside the one into which it changes, where none is told: 1 at the right curb, -1 the leftmost."""
-    side = {"lane_change_left": 1, "lane_change_right": -1}.get(maneuver, 0)
+    side = CHANGES.get(maneuver, 0)
     told = {"right": 1, "left": -1}.get(motion.to_lane, 0) if isinstance(motion.to_lane, str) else motion.to_lane
     if not side or not told or motion.lane_word or told - side == 0:
         return None
@@ -193,8 +193,7 @@ def _without_vehicle(
     for mention in crash.contact_mentions:
         other = ids.get(mention.other)
         if other and other.id not in found:
-            leads: Area = "back" if inferred.maneuvers.get(mention.actor) == "backing" else "front"
-            area = end_of(mention.actor_area) or leads
+            area = end_of(mention.actor_area) or leading_end(inferred.maneuvers.get(mention.actor, "other"))
             faces = (
                 side_facing(crash.walks.get(mention.other, WalkDirection()), inferred.headings.get(mention.actor))
                 or "left"

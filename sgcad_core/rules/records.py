@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from sgcad_core.case.records import ActorInfo, Record, Trajectory
+from sgcad_core.case.records import ActorInfo, Record, Trajectory, sizes_of
 from sgcad_core.geometry.plane import Floats, Size
 from sgcad_core.metrics.displacement import velocities
 from sgcad_core.metrics.drivability import STEP_S, first_touches
@@ -130,7 +130,7 @@ class RuleScene:
         """Actors with their motion up to their first contact with anything."""
         infos = {a.id: a for a in self.actors}
         known = [t for t in self.trajectories if t.actor in infos and len(t.t_s) > 1]
-        sizes = {a.id: (a.length_m, a.width_m) for a in self.actors}
+        sizes = sizes_of(self.actors)
         touches = first_touches(known, sizes, at_start=False)  # a truck overlaps with its trailer
         return tuple(Mover(self.graph, infos[t.actor], t, touches.get(t.actor)) for t in known)
 

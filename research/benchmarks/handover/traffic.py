@@ -24,7 +24,7 @@ from flows.export.export_traffic import SIMULATOR
 from flows.export.finished_case import FinishedCase
 from flows.export.traffic_files import traffic_around_script
 from sgcad_core.case.density import DENSITIES
-from sgcad_core.case.records import RoadNetwork, Scenario, Trajectory
+from sgcad_core.case.records import RoadNetwork, Scenario, Trajectory, sizes_of
 from sgcad_core.case.traffic import Traffic
 from sgcad_core.errors import NoTraffic, SgcadError
 from sgcad_core.execution.contact import first_contact
@@ -119,7 +119,7 @@ def _played(
 def _compare(figures: Figures, player: str, script: Script, traffic: Traffic, tracks: Iterable[Trajectory]) -> None:
     by_id = {track.actor: track for track in tracks}
     crash = [by_id[actor.id] for actor in script.actors]
-    sizes = {a.id: (a.length_m, a.width_m) for a in (*script.actors, *traffic.vehicles)}
+    sizes = sizes_of((*script.actors, *traffic.vehicles))
     told, seen = first_contact(script.trajectories, sizes), first_contact(crash, sizes)
     parts = [(c.actor, c.other, c.actor_area, c.other_area) if c else None for c in (told, seen)]
     figures.same[player] += parts[0] == parts[1]

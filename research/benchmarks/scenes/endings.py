@@ -35,6 +35,7 @@ import numpy as np
 
 from research.benchmarks.run_tables import by_config, options_of, show
 from research.benchmarks.scenes.lanes import Figures, Run
+from sgcad_core.case.records import sizes_of
 from sgcad_core.geometry.plane import Floats, runs, wrap_angle
 from sgcad_core.kinds import actor_kind
 from sgcad_core.metrics.drivability import STEP_S
@@ -183,7 +184,7 @@ def count(folder: Path, figures: Figures) -> None:
     if not (folder / "trajectories.csv").exists():
         return
     run = Run(folder)
-    sizes = {a.id: (a.length_m, a.width_m) for a in run.actors.values()}
+    sizes = sizes_of(run.actors.values())
     crash = Crash({m.actor: Way(m.t_s, m.pose, sizes[m.actor]) for m in run.motions}, run.graph)
     narrow = frozenset(
         a.id for a in run.actors.values() if actor_kind(a.type).thing and max(sizes[a.id]) < _WALL_M

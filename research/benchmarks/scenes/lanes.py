@@ -30,7 +30,7 @@ import numpy as np
 
 from flows.case_files.case_folder import read_trajectories
 from research.benchmarks.run_tables import by_config, options_of, show
-from sgcad_core.case.records import ActorInfo, Trajectory
+from sgcad_core.case.records import ActorInfo, Trajectory, sizes_of
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.geometry.plane import Floats, wrap_angle
 from sgcad_core.metrics.drivability import STEP_S, first_touches
@@ -88,7 +88,7 @@ class Run:
 
     @cached_property
     def touches(self) -> dict[str, int]:
-        return first_touches(self.motions, {a.id: (a.length_m, a.width_m) for a in self.actors.values()})
+        return first_touches(self.motions, sizes_of(self.actors.values()))
 
     @cached_property
     def graph(self) -> LaneGraph:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from sgcad_core.case.traffic import Entrant
 
 FILE = "traffic.rou.xml"
-_LANE_KEEPING = {"lcStrategic": "-1", "lcCooperative": "-1", "lcSpeedGain": "0", "lcKeepRight": "0"}
+LANE_KEEPING = {"lcStrategic": "-1", "lcCooperative": "-1", "lcSpeedGain": "0", "lcKeepRight": "0"}
 
 
 def traffic_routes(entrants: Sequence[Entrant]) -> str:
@@ -17,7 +17,7 @@ def traffic_routes(entrants: Sequence[Entrant]) -> str:
     sizes = {e.kind: (e.length_m, e.width_m) for e in entrants}
     for kind, (length, width) in sorted(sizes.items()):
         size = {"length": f"{length:g}", "width": f"{width:g}"}
-        ET.SubElement(root, "vType", {"id": kind, "vClass": "passenger", **size, **_LANE_KEEPING})
+        ET.SubElement(root, "vType", {"id": kind, "vClass": "passenger", **size, **LANE_KEEPING})
     for e in sorted(entrants, key=lambda entrant: entrant.depart_s):
         told = {"id": e.id, "type": e.kind, "depart": f"{e.depart_s:.2f}", "departLane": str(e.lane)}
         vehicle = ET.SubElement(root, "vehicle", {**told, "departPos": f"{e.at_m:.3f}", "departSpeed": "max"})

@@ -14,7 +14,7 @@ import numpy as np
 
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import ActorInfo, Floats, Trajectory
-from sgcad_core.case.traffic import ROLE, Background
+from sgcad_core.case.traffic import BRAKING_MPS2, ROLE, Background
 from sgcad_core.formats.opendrive.geometry import Pose
 from sgcad_core.formats.openscenario.writing.entities import center_ahead_m
 from sgcad_core.formats.openscenario.writing.vertices import APART_M, vertex_rows
@@ -32,8 +32,6 @@ _COARSE = 4
 """Of so many samples behind the conflict one is written."""
 INDENT = "  " * 15
 """Of the vertices."""
-BRAKES_MPS2 = 4.5
-"""By which the traffic stops behind the script: SUMO's usual deceleration, on which its vehicles' gaps are built."""
 _STILL_M = 0.02
 """An actor that goes less than this from sample to sample all the way stands."""
 
@@ -136,20 +134,20 @@ def stopped_behind(graph: LaneGraph, track: Trajectory, maneuver: str) -> Trajec
     """A motion and, behind it, braking to a stand along the lanes."""
     speed = float(track.speed_mps[-1])
     x, y, heading = (float(v) for v in track.pose[-1])
-    way_m, lasts_s = speed**2 / (2 * BRAKES_MPS2), speed / BRAKES_MPS2
+    way_m, lasts_s = speed**2 / (2 * BRAKING_MPS2), speed / BRAKING_MPS2
     if lasts_s < STEP_S:
         return track
     t_s = np.arange(1, int(lasts_s / STEP_S) + 1) * STEP_S
     line = continued_line(graph, Start(x, y, heading), way_m, maneuver)
     along = arc_lengths(line)
-    at = np.clip(speed * t_s - BRAKES_MPS2 * t_s**2 / 2, 0.0, along[-1])
+    at = np.clip(speed * t_s - BRAKING_MPS2 * t_s**2 / 2, 0.0, along[-1])
     more = np.column_stack([np.interp(at, along, line[:, k]) for k in (0, 1)] + [np.interp(at, along, headings(line))])
     pose = np.vstack((track.pose, more))
     end = float(track.t_s[-1])
     return track.model_copy(update={
         "t_s": np.append(track.t_s, end + t_s), "x_m": pose[:, 0], "y_m": pose[:, 1],
         "heading_rad": np.unwrap(pose[:, 2]),
-        "speed_mps": np.append(track.speed_mps, np.maximum(speed - BRAKES_MPS2 * t_s, 0.0)),
+        "speed_mps": np.append(track.speed_mps, np.maximum(speed - BRAKING_MPS2 * t_s, 0.0)),
     })  # fmt: skip
 
 

@@ -176,8 +176,8 @@ def _various(runs: Sequence[RunOut], costs: Floats, *, again: bool) -> list[int]
     sorts: dict[tuple[float, ...], list[int]] = {}
     for i in np.argsort(costs, kind="stable").tolist():
         run = runs[i]
-        sort = (run.bend_per_m, run.slides, np.sign(run.yaws_radps2), run.turning < _TURNS_FREELY) if again else ()
-        sorts.setdefault((*sort, run.bend_per_m), []).append(i)
+        further = (run.slides, np.sign(run.yaws_radps2), run.turning < _TURNS_FREELY) if again else ()
+        sorts.setdefault((run.bend_per_m, *further), []).append(i)
     return [i for same in sorts.values() for i in same[: _EACH_WAY if again else 1]]
 
 

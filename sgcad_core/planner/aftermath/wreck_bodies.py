@@ -83,11 +83,10 @@ def shift(a: Mover, b: Mover, seen: Separation, by_m: float) -> None:
 
 def throw_aside(thing: Body, by: Body) -> None:
     """Gives a struck thing the speed of what struck it, and throws it to the nearer side of the way of that."""
-    dx, dy, off = thing.x - by.x, thing.y - by.y, thing.heading - by.heading
+    dx, dy = thing.x - by.x, thing.y - by.y
     c, s = math.cos(by.heading), math.sin(by.heading)
     left = dy * c - dx * s
-    across = (thing.size[0] * abs(math.sin(off)) + thing.size[1] * abs(math.cos(off))) / 2
-    clear = by.size[1] / 2 + across + _PASSES_M - abs(left)
+    clear = by.size[1] / 2 + _half_across(thing, by.heading) + _PASSES_M - abs(left)
     aside = math.copysign(min(max(clear / _ASIDE_S, _LEAST_ASIDE_MPS), _MOST_ASIDE_MPS), left)
     thing.vx, thing.vy, thing.spin = by.vx - aside * s, by.vy + aside * c, 0.0
 
@@ -106,8 +105,8 @@ def _glance(thing: Body, by: Body, across_mps2: float) -> None:
     speed = by.speed
     c, s = (by.vx / speed, by.vy / speed) if speed > 0.0 else (math.cos(by.heading), math.sin(by.heading))
     dx, dy = thing.x - by.x, thing.y - by.y
-    left = dy * c - dx * s
-    overlap = _half_across(by, c, s) + _half_across(thing, c, s) - abs(left)
+    left, way = dy * c - dx * s, math.atan2(s, c)
+    overlap = _half_across(by, way) + _half_across(thing, way) - abs(left)
     aside = -math.copysign(math.sqrt(2 * across_mps2 * max(overlap + _CLEARS_M, 0.0)), left)
     lost = _LOST * speed
     by.vx -= lost * c + aside * s
@@ -115,9 +114,9 @@ def _glance(thing: Body, by: Body, across_mps2: float) -> None:
     by.spin += left * lost * by.inverse_inertia / by.inverse_mass
 
 
-def _half_across(one: Body, c: float, s: float) -> float:
+def _half_across(one: Body, way_rad: float) -> float:
     """Half of the width of a body across a direction."""
-    off = math.atan2(s, c) - one.heading
+    off = way_rad - one.heading
     return (one.size[0] * abs(math.sin(off)) + one.size[1] * abs(math.cos(off))) / 2
 
 

@@ -105,14 +105,15 @@ class Conflicts:
             return self._options(a, b, ways), self._options(b, a, ways)
 
         yield Stage(both(_as_told), _AS_TOLD, _TOLD_ENOUGH)
+        plain = both(plainly)
         if implied_crossings(a) or implied_crossings(b):
-            steep, plain = both(steeply), both(plainly)
+            steep = both(steeply)
             yield Stage((steep[0], plain[1]), _TRIES[0])
             yield Stage((plain[0], steep[1]), _TRIES[0])
         yield Stage(both(options), _TRIES[0])
         if a.actor.maneuver in TURNING or b.actor.maneuver in TURNING:
             yield Stage(both(turned), _TURNING)
-        facing, plain = both(aimed), both(plainly)
+        facing = both(aimed)
         yield Stage(facing, _TRIES[1])
         yield Stage((plain[0], facing[1]), _ONE_TURNS)
         yield Stage((facing[0], plain[1]), _ONE_TURNS)

@@ -6,7 +6,6 @@ before it is unchanged. Knows one actor and not the conflict. SI units.
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -15,6 +14,7 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift
 from sgcad_core.planner.encounter.motion_options import Option
+from sgcad_core.planner.lines.path import ramp_length_m
 from sgcad_core.planner.motion import STEP_S, Motion
 
 MOST_STEER_M = 4.2
@@ -79,8 +79,7 @@ def _steered(option: Option, motion: Motion, reaction: Reaction) -> Motion:
     """The option with a swerve added, as long as friction asks; its clock agrees with the motion at the beginning."""
     station, ahead = (float(s) for s in motion.stations([reaction.from_s, reaction.from_s + STEP_S]))
     speed = (ahead - station) / STEP_S
-    left = abs(reaction.left_m)
-    length = max(_EASE * speed * math.sqrt(5.77 * left / _SWERVE_MPS2), 3.3 * left, 4.0)
+    length = ramp_length_m(reaction.left_m, _EASE * speed, _SWERVE_MPS2)
     holds = _PASSES_S * speed
     dodge = Drift(0.0, reaction.left_m, length, station + length, back=True, holds_m=holds, note="steers aside")
     steered = replace(option, dodge=dodge).motion

@@ -23,6 +23,7 @@ from sgcad_core.planner.encounter.pacing_choices import from_another_road
 from sgcad_core.planner.lines.box_angles import SKIDS, STEERS
 from sgcad_core.planner.lines.crossing import LEAVES, crossings, end_meets_flank
 from sgcad_core.planner.lines.departures import DEPARTURES, aside_m, departs, departure_sides
+from sgcad_core.planner.lines.path import ramp_length_m
 from sgcad_core.planner.lines.told_moves import last_move, with_earlier
 from sgcad_core.planner.lines.turning import corner_lines
 from sgcad_core.records.course import Move, Steering
@@ -197,7 +198,7 @@ def _maneuver_shift(role: Role) -> float | None:
 
 def _drift(role: Role, left_m: float, cost: float, ease: float, note: str = "") -> Drift:
     """A drift as long as its lateral acceleration allows: ease 1 is hard, more is gentler; longer on snow and ice."""
-    dry = max(ease * usual_speed(role) * math.sqrt(5.77 * abs(left_m) / SWERVE_MPS2), 3.3 * abs(left_m), 4.0)
+    dry = ramp_length_m(left_m, ease * usual_speed(role), SWERVE_MPS2)
     room = role.place.station_m - role.course.first_m - usual_speed(role)
     length = min(dry * math.sqrt(max(DRIVING.friction_mps2(None) / role.grip_mps2, 1.0)), max(room, dry))
     return Drift(cost, left_m, length, role.place.station_m, note=note)

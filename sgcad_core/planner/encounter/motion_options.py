@@ -35,7 +35,7 @@ from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, cost_outside, i
 from sgcad_core.planner.lines.axle_to_box import bent_before, box_path, easiest, offset, skidding, tightest
 from sgcad_core.planner.lines.box_angles import aiming, skids, slides, spins
 from sgcad_core.planner.lines.crossing import implied_crossings
-from sgcad_core.planner.lines.path import Path, ramp, widened_bends
+from sgcad_core.planner.lines.path import Path, ramp, ramp_length_m, widened_bends
 from sgcad_core.planner.lines.turning import corner_lines
 from sgcad_core.planner.motion import HARD_MPS2, Motion, Pace, drive, stand
 from sgcad_core.planner.stationary_actors import (
@@ -235,7 +235,7 @@ def _steered(line: Path, option: Option, pace: Pace) -> Path:
         return turned
     ahead, left = offset(line, turned, place.station_m)
     off = place.aside_m - left
-    length = max(1.7 * pace.cruise_mps * math.sqrt(5.77 * abs(off) / HARD_MPS2), 3.3 * abs(off), 4.0)
+    length = ramp_length_m(off, 1.7 * pace.cruise_mps, HARD_MPS2)
     end = place.station_m - ahead + place.ahead_m
     begin = end - abs(twist.angle_rad) * radius * 1.4 - 2.0
     return bent_before(line.moved(off * ramp(line.s_m, begin - length, length)), twist.angle_rad, end, radius)

@@ -129,6 +129,13 @@ def ramp(s_m: Floats, start_m: float, length_m: float) -> Floats:
     return rise
 
 
+def ramp_length_m(left_m: float, speed_mps: float, mps2: float, least_m: float = 4.0) -> float:
+    """Length of a `ramp` to one side in which a speed takes no more than a lateral acceleration (5.77 is the largest
+    second derivative of the step), that is no steeper than 30 degrees and no shorter than some length."""
+    aside = abs(left_m)
+    return max(speed_mps * math.sqrt(5.77 * aside / mps2), 3.3 * aside, least_m)
+
+
 def draw(points: Floats, smooth_m: float = 3.0, speed_mps: float = 0.0) -> Path:
     """A path along a polyline (n, 2): corners rounded over about `smooth_m`, straight runs added at both ends.
 

@@ -14,6 +14,7 @@ from typing import NamedTuple
 from sgcad_core.kinds import Maneuver
 from sgcad_core.planner.actor_plan import Drift, Role, Swing, usual_speed
 from sgcad_core.planner.lines.departures import departure_sides
+from sgcad_core.planner.lines.path import ramp_length_m
 from sgcad_core.planner.motion import HARD_MPS2
 from sgcad_core.records.course import Move
 
@@ -100,7 +101,7 @@ def _still_m(role: Role) -> float:
 
 def _length(role: Role, left_m: float) -> float:
     """The length of a swing at the usual speed, metres."""
-    return max(_EASE * usual_speed(role) * math.sqrt(5.77 * abs(left_m) / HARD_MPS2), 3.3 * abs(left_m), _LEAST_M)
+    return ramp_length_m(left_m, _EASE * usual_speed(role), HARD_MPS2, _LEAST_M)
 
 
 # ------------------------------------------------------------------ where the moves lead

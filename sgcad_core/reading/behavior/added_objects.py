@@ -11,10 +11,11 @@ from itertools import islice
 
 from sgcad_core.kinds import RAMP, actor_kind
 from sgcad_core.reading.actors.people_objects import OtherFacts, kind_of_word
+from sgcad_core.reading.contacts.contact_records import leading_end
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.layout.road_ways import Way, exits, turn_of, ways_of
 from sgcad_core.records.course import ImpactTold
-from sgcad_core.records.specs import Actor, ActorKind, Area, Contact, RoadSpec
+from sgcad_core.records.specs import Actor, ActorKind, Contact, RoadSpec
 
 _SIZE_M: dict[str, tuple[float, float]] = {
     "pole": (0.4, 0.4), "tree": (0.5, 0.5), "post": (0.3, 0.3), "sign": (0.3, 0.8), "signal": (0.4, 0.4),
@@ -43,18 +44,19 @@ def with_roadside(
     Contacts stand in told order. `most`: actors and contacts in all.
     """
     joined, told = list(actors), _Told(len(contacts))
+    words = {other.id: other.word for other in facts.others}
     for impact in islice(_again(facts, contacts), 1):
         told.add(impact.after, _once_more(impact, contacts[0]))
     for vehicle, other, impact in _struck(facts, {a.id for a in actors}):
         driver = next((a for a in actors if a.id == vehicle), None)
         if driver is None or len(joined) >= most[0] or len(told.further) + len(contacts) >= most[1]:
             continue
-        joined.append(_held(_standing(other, driver, endwise=_is_met_endwise(impact, contacts)), other.word))
+        joined.append(_standing(other, driver, endwise=_is_met_endwise(impact, contacts)))
+        words[other.id] = other.word
         told.add(impact.after, Contact(
-            striker=vehicle, struck=other.id, striker_area=impact.actor_area or _leading(driver),
+            striker=vehicle, struck=other.id, striker_area=impact.actor_area or leading_end(driver.maneuver),
             struck_area="front" if actor_kind(other.kind).thing else "left",
         ))  # fmt: skip
-    words = {other.id: other.word for other in facts.others}
     return tuple(_held(actor, words.get(actor.id, "")) for actor in joined), tuple(told.merged(contacts))
 
 
@@ -62,11 +64,6 @@ def _held(actor: Actor, word: str) -> Actor:
     """The actor, firm where it is a thing that does not give way."""
     firm = actor.record.thing and word.lower().rpartition(" ")[2].rstrip("s") in _FIRM
     return actor.model_copy(update={"firm": True}) if firm else actor
-
-
-def _leading(driver: Actor) -> Area:
-    """The side that a vehicle strikes things with where none is told."""
-    return "back" if driver.maneuver == "backing" else "front"
 
 
 @dataclass

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from sgcad_core.kinds import CHANGES
 from sgcad_core.reading.behavior.exit_assignment import Placed
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
-from sgcad_core.reading.layout.lanes_used import CENTER, CHANGES
+from sgcad_core.reading.layout.lanes_used import CENTER
 from sgcad_core.reading.layout.road_ways import Way
 from sgcad_core.records.specs import Turn
 

@@ -9,11 +9,16 @@ from typing import get_args
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.area_phrases import Zone
 from sgcad_core.reading.text.sentence_roles import HIT, Role
-from sgcad_core.records.specs import Area
+from sgcad_core.records.specs import Area, Maneuver
 
 AREAS: tuple[Area, ...] = get_args(Area)
 GROUND = ("curb", "island", "median", "ditch", "ground")
 """What a vehicle drives over: no body that stops it."""
+
+
+def leading_end(maneuver: Maneuver) -> Area:
+    """The end of a vehicle that comes first, with which it strikes things where no side is told."""
+    return "back" if maneuver == "backing" else "front"
 
 
 @dataclass(frozen=True)

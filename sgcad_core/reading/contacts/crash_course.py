@@ -262,7 +262,8 @@ def _read_place(one: _CourseReader, segment: Segment, text: str, clause: str | N
 
 def _read_lane(one: _CourseReader, segment: Segment, clause: str | None) -> None:
     """The lane of a rest on the road."""
-    found = rest_lane(clause, from_median=one.from_median) if clause and one.course.rest.where == "road" else None
-    for name, value in (("lane", found.lane), ("lane_way", found.way)) if found else ():
-        if value is not None and found is not None:
+    if not clause or one.course.rest.where != "road" or not (found := rest_lane(clause, from_median=one.from_median)):
+        return
+    for name, value in (("lane", found.lane), ("lane_way", found.way)):
+        if value is not None:
             one.add_rest(name, value, Source(segment.number, found.words, "course_rest.lane"))

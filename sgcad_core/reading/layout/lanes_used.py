@@ -10,20 +10,18 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from sgcad_core.kinds import JOINING, RAMP, actor_kind
+from sgcad_core.kinds import CHANGES, JOINING, RAMP, actor_kind
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.motion.motion_record import DRIVES
 from sgcad_core.reading.roads.road_facts import RoadFacts
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.text.compass import NAMES, between, turned
-from sgcad_core.records.specs import Compass, Leg, Maneuver, RoadLayout, Turn
+from sgcad_core.records.specs import Compass, Leg, RoadLayout, Turn
 
 CENTER = "center_turn"
 """The word for a two-way left-turn lane."""
 MOST = 7
 """Lanes in one direction."""
-CHANGES: dict[Maneuver, int] = {"lane_change_left": 1, "lane_change_right": -1}
-"""Maneuvers into a lane beside the own one, and its side: 1 to the left."""
 _LEFT_USES: dict[Turn, Turn] = {"left_through": "through", "any": "through_right", "left_right": "right"}
 _RIGHT_USES: dict[Turn, Turn] = {"through_right": "through", "any": "left_through", "left_right": "left"}
 _AHEAD = (0, 45, 315)

@@ -5,10 +5,9 @@ from __future__ import annotations
 import pytest
 
 from plugins.scenario_writer.rules import Rules
-from sgcad_core.case.records import Context, Generation, Query, RoadNetwork, Scenario
+from sgcad_core.case.records import Context, Generation, Query, RoadNetwork, Scenario, sizes_of
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.execution.contact import first_contact
-from sgcad_core.execution.playback import sizes_of
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.records.specs import Leg, RoadLayout
@@ -41,7 +40,7 @@ def _write(text: str, network: RoadNetwork) -> Scenario:
 )  # fmt: skip
 def test_the_told_contact_is_the_first_one(text: str, sides: dict[str, str], cross: RoadNetwork) -> None:
     scenario = _write(text, cross)
-    seen = first_contact(scenario.planned, sizes_of(scenario))
+    seen = first_contact(scenario.planned, sizes_of(scenario.actors))
     assert seen is not None
     assert {seen.actor: seen.actor_area, seen.other: seen.other_area} == sides
 
