@@ -72,12 +72,22 @@ def _road(made: ExecutedCase, road: RoadFact, name: str, value: Value) -> Compar
 def _lanes(made: ExecutedCase, road: RoadFact, here: list[CompiledRoad], name: str, value: int) -> Comparison:
     """A lane total with all readings that its words allow: of one carriageway, or of both where that is open."""
     wanted = allowed_totals(road, made.pictured) or {value, 2 * value if name == "lanes_each_way" else value}
-    counts = {n for d in here for n in ((d.total, d.forward, d.backward) if road.lanes.divided else (d.total,))}
-    if name == "lanes_each_way":
+    counts = {d.total for d in here}
+    if name == "lanes_each_way" or _of_one_half(made, road):
         counts |= {n for d in here for n in (d.forward, d.backward)}
         wanted = wanted | {value}
     seen = ", ".join(f"{d.id} {d.forward}+{d.backward}" for d in here[:4])
     return Comparison(bool(counts & wanted), seen, f"drawn: {seen or 'no such road'}")
+
+
+def _of_one_half(made: ExecutedCase, road: RoadFact) -> bool:
+    """Whether a total may be that of one carriageway: of a divided road, a highway, or with a lane beyond its half."""
+    lanes = road.lanes
+    if lanes.divided is False:
+        return False
+    used = max((abs(v.lane or 0) for v in made.reading.crash.vehicles if v.id in road.vehicles), default=0)
+    beyond = lanes.total is not None and used > (lanes.total + 1) // 2
+    return bool(lanes.divided or lanes.highway or road.kind == "freeway" or beyond)
 
 
 def _lanes_one_way(made: ExecutedCase, here: list[CompiledRoad], way: str, value: int) -> Comparison | None:

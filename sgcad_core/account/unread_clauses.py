@@ -6,18 +6,22 @@ act of the timeline of that kind points to it. What is told once more after it w
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
 from sgcad_core.reading.junctions.junction import CIRCLE_LANES
 from sgcad_core.reading.language import of_role, rule
+from sgcad_core.reading.language.rules import Rule
 from sgcad_core.reading.reading import Reading
-from sgcad_core.reading.text.normalise import Sentence
+from sgcad_core.reading.text.normalise import Sentence, number
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES, is_impact
+from sgcad_core.records.course import CourseTold
 
 _VEHICLE = rule("common.vehicle")
+_ASIDE = ("crossing_centerline", "departing_road_left", "departing_road_right", "lane_change_left", "lane_change_right")
+"""Maneuvers over the line beside a lane."""
 _SHOWN = 110
 """Characters of a sentence that an item quotes."""
 _ABOUT = {
@@ -87,7 +91,28 @@ def _unread(reading: Reading, sentence: Sentence, kind: str) -> Item:
 def _lane(reading: Reading, sentence: Sentence, read: _Read) -> bool:
     around = reading.roads.junction.circle_lanes is not None and CIRCLE_LANES.search(sentence.text)
     heard = read.has(sentence.start, "lane", "approaches", "one_way", "divided")
-    return sentence.start > read.first_contact or heard or bool(around)
+    late = sentence.start > read.first_contact
+    return late or heard or bool(around) or not _tells_lanes(_without_known(reading, sentence))
+
+
+def _tells_lanes(text: str) -> bool:
+    return any(words.search(text) for words in of_role("telling") if words.yields["tells"] == "lane")
+
+
+def _without_known(reading: Reading, sentence: Sentence) -> str:
+    """A sentence without the counts of lanes, the lanes and the lines of lanes that are known from elsewhere."""
+    named = [v for v in reading.crash.vehicles if v.id in reading.named_in(sentence)]
+    lanes = [road.lanes for road in reading.roads.roads]
+    counts = {n for one in lanes for n in (one.total, one.each_way, *one.toward.values())}
+    text = _out(rule("account.counted_lanes"), sentence.text, counts)
+    text = _out(rule("account.numbered_lane"), text, {abs(v.lane) for v in named if v.lane})
+    told = [reading.crash.driven.get(v.id, CourseTold()) for v in named]
+    aside = any(v.maneuver in _ASIDE for v in named) or any(one.departs or one.moves for one in told)
+    return rule("account.edge_of_lane").sub(" ", text) if aside else text
+
+
+def _out(words: Rule, text: str, known: Collection[int | None]) -> str:
+    return words.sub(lambda m: " " if number(m["count"]) in known else m[0], text)
 
 
 def _side(reading: Reading, sentence: Sentence, read: _Read) -> bool:

@@ -56,6 +56,8 @@ class Role:
     """Whether the report states how the impact turns the other one."""
     may_skid: bool = False
     """Whether the report states a loss of control."""
+    other_parked: bool = False
+    """Whether the other one is parked beside the lanes."""
     other_lost: bool = False
     """Whether it states that of the other one."""
     pushed: bool = False

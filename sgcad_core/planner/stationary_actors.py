@@ -15,6 +15,9 @@ from sgcad_core.planner.lines.box_angles import ASKEW, aiming
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import Motion
 
+_IN_LANE = 0.9
+"""Cost of standing in the lane although there is a place beside it: more than that of a way out of the lane to it."""
+
 
 def stand_offs(role: Role) -> list[Drift]:
     """How far beside its lane a standing actor stands."""
@@ -24,11 +27,25 @@ def stand_offs(role: Role) -> list[Drift]:
         lines = [(curb, 0.0), (shoulder, 0.1), ((curb + shoulder) / 2, 0.15), (curb / 2, 0.6), (0.0, 0.9)]
         if role.actor.lane is not None and right > role.course.lane_width_m:  # not the curb lane: it stands in it
             return [Drift(0.0), Drift(0.1, 0.5), Drift(0.1, -0.5), *(Drift(cost + 1.0, left) for left, cost in lines)]
-        beside = role.course.beside_m
-        if aside_m := beside.get("parking", beside.get("shoulder")):
-            lines = [(-aside_m, 0.0), *((left, cost + 0.2) for left, cost in lines)]
+        if aside_m := parked_beside_m(role):
+            near = ((0.0, 0.0), (0.25, 0.05), (-0.25, 0.05), (0.5, 0.15))
+            lines = [
+                *((more - aside_m, cost) for more, cost in near),
+                *((left, cost + _IN_LANE) for left, cost in lines),
+            ]
         return [Drift(cost, left) for left, cost in lines]
     return [Drift(0.0), *(Drift(0.1 + abs(left) / 5, left) for left in (0.5, -0.5, 1.0, -1.0, 1.8, -1.8))]
+
+
+def parked_beside_m(role: Role) -> float:
+    """How far right of the middle of its lane a parked vehicle is told to stand: where people park, else on the
+    shoulder; 0 where neither is drawn, and in a lane that is not the curb's."""
+    beside, right = role.course.beside_m, role.course.right_edge_m
+    if role.actor.maneuver != "parked" or role.course.stalls:
+        return 0.0
+    if role.actor.lane is not None and right > role.course.lane_width_m:
+        return 0.0
+    return beside.get("parking", beside.get("shoulder", 0.0))
 
 
 def in_stall(role: Role) -> bool:

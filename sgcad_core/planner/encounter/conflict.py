@@ -6,6 +6,7 @@ Knows the behavior and the courses; no scene.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
@@ -30,6 +31,7 @@ from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.departures import departs, departure_station, side_of
 from sgcad_core.planner.lines.told_moves import with_room
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
+from sgcad_core.planner.stationary_actors import parked_beside_m
 from sgcad_core.records.course import Courses, CourseTold
 from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact, size_m
 
@@ -137,6 +139,7 @@ class Conflicts:
         if b.record.thing:
             first = with_room(first)
             second = replace(second, place=first.place)
+        first, second = _towards_parked(first, second), _towards_parked(second, first)
         return _facing_other(first, second), _facing_other(second, first)
 
     def _told(self, actor: Actor, other: Actor) -> CourseTold:
@@ -198,6 +201,16 @@ def _as_told(role: Role) -> list[Option]:
     if is_standing(role):
         return [option for option in options(role) if option.twist.note != ASKEW]
     return [option for option in options(role) if not option.twist.angle_rad and option.drift.note not in UNTOLD]
+
+
+def _towards_parked(role: Role, other: Role) -> Role:
+    """A driving role whose other one stands beside the lanes: the other's line lies there."""
+    aside_m = 0.0 if is_standing(role) else parked_beside_m(other)
+    if not aside_m:
+        return role
+    left_m = role.place.aside_m - aside_m * math.cos(role.place.angle_rad)
+    place = role.place._replace(aside_m=left_m, apart_m=math.hypot(left_m, role.place.ahead_m))
+    return replace(role, place=place, other_parked=True)
 
 
 def _facing_other(role: Role, other: Role) -> Role:

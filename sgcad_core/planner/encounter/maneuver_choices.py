@@ -44,8 +44,14 @@ _OTHER_SIDE, _STAYS_ON_ROAD = 0.25, 2.5
 _OFF_BEHIND_TURN_M = 16.0
 """Length of the way off the road of a vehicle that turns first."""
 _SWERVES, _OFF_COURSE = "swerves", "leaves its course"
+HEAD_ON = "leaves its lane, as the told sides imply of one of the two"
+PARKED_THERE = "leaves its lane, as the place of the parked vehicle implies"
+_OVERLAPS = ((0.4, 0.0), (0.25, 0.03), (0.6, 0.05), (0.9, 0.1))
+"""Shares of its width with which a vehicle meets a parked one, and their costs."""
 UNTOLD = (STEERS, LEAVES, _SWERVES, _OFF_COURSE, SKIDS)
 """Notes on driving that a report does not tell unless it tells a swerve or a skid."""
+_AGAINST = 0.8
+"""Cosine from which on another one comes against its way."""
 _GENTLE = 0.2
 """Cost of a gentle change of line where a steep one is needed."""
 
@@ -81,7 +87,7 @@ def _lines(role: Role, *, fine: bool) -> list[Drift]:
     if role.actor.maneuver in _LANE_CHANGES:
         joins = role.actor.maneuver == "merge" and _joins(role)
         changes = _lane_changes(role, (0.0, 0.8, -0.8) if fine else (0.0,))
-        changes = _behind(steep, changes)
+        changes = [*_to_parked(role), *_behind(steep, changes)]
         return [Drift(0.0), *(d._replace(cost=d.cost + 0.2) for d in changes)] if joins else changes
     wanted = _maneuver_shift(role)
     if wanted is not None:
@@ -89,11 +95,20 @@ def _lines(role: Role, *, fine: bool) -> list[Drift]:
         if role.spins or role.glances:
             shares = [(0.63, 0.0), (1.37, 0.05), (1.0, 0.1), *shares[1:]]
         shares = shares if fine else [shares[0], shares[3], shares[4]]
-        return [*_behind(steep, _shifts(role, wanted, shares)), Drift(0.8)]
-    near = _in_lane(role) if fine else []
+        return [*_behind(steep, [*_shifts(role, wanted, shares), *_far_over(role, shares)]), Drift(0.8)]
+    near = [*_to_parked(role), *(_in_lane(role) if fine else [])]
     if evading := _evading(role):
         return [*evading, *(line._replace(cost=line.cost + _NOT_EVADING) for line in (Drift(0.0), *near))]
     return [Drift(0.0), *near, *corner_lines(role), *_other_lanes(role), *_swerves(role)]
+
+
+def _to_parked(role: Role) -> list[Drift]:
+    """Lines that leave the lane as far as a part of the width meets a parked vehicle, which is told to stand there."""
+    if not role.other_parked:
+        return []
+    aside, touch = role.place.aside_m, (role.size[1] + role.other_width_m) / 2
+    reach = [(abs(aside) - touch + share * role.size[1], cost) for share, cost in _OVERLAPS]
+    return [_drift(role, math.copysign(left, aside), cost, 1.7, PARKED_THERE) for left, cost in reach if left > 0]
 
 
 def _steep(role: Role) -> list[Drift]:
@@ -126,6 +141,14 @@ def _departures(role: Role, *, fine: bool) -> list[Drift]:
     if role.actor.maneuver in TURNING:
         found = [drift._replace(length_m=min(drift.length_m, _OFF_BEHIND_TURN_M)) for drift in found]
     return sorted([*found, Drift(_STAYS_ON_ROAD)], key=lambda drift: drift.cost)
+
+
+def _far_over(role: Role, shares: Sequence[tuple[float, float]]) -> Iterator[Drift]:
+    """Ways over the center line into a lane of oncoming traffic beyond the nearest one, where the other one comes."""
+    aside, nearest = role.place.aside_m, role.course.opposite_m
+    against = math.cos(role.place.angle_rad) < -_AGAINST
+    if role.actor.maneuver == "crossing_centerline" and against and aside > nearest + role.course.lane_width_m / 2:
+        yield from _shifts(role, aside, shares)
 
 
 def _evading(role: Role) -> list[Drift]:
@@ -222,13 +245,20 @@ def _other_lanes(role: Role) -> list[Drift]:
 
 def _swerves(role: Role) -> list[Drift]:
     place, found = role.place, []
+    note = HEAD_ON if _must_cross(role) else LEAVES
     if place.apart_m > 1.2 and abs(math.sin(place.angle_rad)) < 0.5 and abs(place.aside_m) < 16:
         for extra, cost in ((0.0, 0.3), (0.7, 0.33), (-0.7, 0.33), (1.4, 0.36), (-1.4, 0.36)):
-            found.append(_drift(role, place.aside_m + extra, cost, 1.3, LEAVES))
+            found.append(_drift(role, place.aside_m + extra, cost, 1.3, note))
     found += _from_beside(role)
     for left, cost in ((1.8, 0.4), (-1.8, 0.4), (3.3, 0.6), (-3.3, 0.6)):
         found.append(_drift(role, left, cost, 1.0, _SWERVES))
     return found
+
+
+def _must_cross(role: Role) -> bool:
+    """Whether the fronts of two that come against each other in their lanes are told to touch: one leaves its lane."""
+    against = math.cos(role.place.angle_rad) < -_AGAINST
+    return against and (role.side, role.other_side) == ("front", "front")
 
 
 def _from_beside(role: Role) -> list[Drift]:

@@ -36,8 +36,9 @@ def departs(maneuver: Maneuver, told: DepartureSide | None) -> bool:
 
 
 def side_of(maneuver: Maneuver, told: DepartureSide | None) -> DepartureSide | None:
-    """The side on which the road is left: told last, else that of the maneuver."""
-    return told or {1: "left", -1: "right"}.get(DEPARTURES.get(maneuver, 0))  # type: ignore[return-value]
+    """The side on which the road is left: told last, else that of the maneuver; "either" names no side."""
+    of_maneuver = {1: "left", -1: "right"}.get(DEPARTURES.get(maneuver, 0))
+    return of_maneuver if of_maneuver and told in (None, "either") else told  # type: ignore[return-value]
 
 
 def departure_station(course: Course, maneuver: Maneuver, usual_m: float) -> float:

@@ -35,6 +35,8 @@ class Hypothesis(NamedTuple):
     """Whether it is the other side of a corner in a report without vehicle numbers: the words fit both."""
     either: bool = False
     """Whether it is the other side of a told corner in any report."""
+    heading: bool = False
+    """Whether it is another heading in the place of one that no words tell."""
 
 
 def hypotheses(facts: CrashFacts) -> list[Hypothesis]:
@@ -80,9 +82,9 @@ def _headings(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesi
         if v.heading is not None and not v.heading_stated and (facts.oriented or v in alone):
             for by in (90, -90, 180):
                 heading = turned(v.heading, by)
-                yield _changed(
-                    facts, replace(v, heading=heading), f"{v.id} heads {heading}", _NEAR if alone else _HEADING
-                )
+                price = _NEAR if alone else _HEADING
+                other = _changed(facts, replace(v, heading=heading), f"{v.id} heads {heading}", price)
+                yield other._replace(heading=True)
 
 
 def _turns(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis]:

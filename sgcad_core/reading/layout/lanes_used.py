@@ -54,9 +54,16 @@ def lanes_added(facts: RoadFacts, layout: RoadLayout) -> tuple[str, ...]:
 
 def least_lanes(v: VehicleFacts, crash: CrashFacts) -> int:
     """The least number of lanes in its direction where a vehicle is in its lane and has the lane that it changes to."""
-    side = CHANGES.get(v.maneuver, 0)
+    side = _change(v, crash)
     least = abs(v.lane) + (side * v.lane > 0) if v.lane else _own(v)
     return min(max(least, 1 + abs(side), 1 + _changing(v, crash)), MOST)
+
+
+def _change(v: VehicleFacts, crash: CrashFacts) -> int:
+    """1: it changes to the lane on its left, -1: on its right; 0 where it leaves its lane towards a parked vehicle."""
+    side, other = CHANGES.get(v.maneuver, 0), crash.first_met(v.id)
+    beside = other is not None and other.maneuver == "parked" and other.lane is None
+    return 0 if side < 0 and beside else side
 
 
 def _own(v: VehicleFacts) -> int:
@@ -82,7 +89,7 @@ def _meets_own_way(v: VehicleFacts, crash: CrashFacts) -> bool:
 
 def _changing(v: VehicleFacts, crash: CrashFacts) -> int:
     """How many of those that drive its way change lanes to different sides: two need three lanes."""
-    return len({CHANGES[o.maneuver] for o in crash.vehicles if o.heading == v.heading and o.maneuver in CHANGES})
+    return len({_change(o, crash) for o in crash.vehicles if o.heading == v.heading} - {0})
 
 
 # ------------------------------------------------------------------ needs
@@ -91,8 +98,8 @@ def _needs(crash: CrashFacts) -> Iterator[_Need]:
         if v.heading is None or v.origin in (*DRIVES, RAMP) or v.maneuver == "parked" or actor_kind(v.kind).keeps_right:
             continue
         word = v.lane_word if v.lane is None else None
-        if v.maneuver in CHANGES:
-            hand = "left" if CHANGES[v.maneuver] > 0 else "right"
+        if side := _change(v, crash):
+            hand = "left" if side > 0 else "right"
             leftward = hand == "left" and not _meets_own_way(v, crash)
             why = f"{v.id} changes lanes to the {hand}"
             yield _Need(v.heading, least_lanes(v, crash), leftward=leftward, why=why)

@@ -40,6 +40,9 @@ SURE = 0.9
 """How sure the model must be of each part of a contact that the rules cannot read."""
 _ROAD = ("legs", "lanes", "turns", "curve")
 """Fields that a layout carries and no fact of a road holds."""
+_KEPT = ("heading", "curve")
+"""Fields of which a told value stays: of five told headings that the model replaced in 300 development reports none
+became right, and three became wrong."""
 _LEARNED = ("none", FOUR_LEG, T, DRIVEWAY, RAMP)
 """Kinds of junctions whose layouts the embedded model has learned; of a ramp without the lane in which one merges."""
 
@@ -118,9 +121,10 @@ def decided(
     found = {}
     for key, said in model.items():
         weight, rule = weights.get(kind_of(key)), rules.get(key)
-        if weight is None or (rule is not None and agree(key, rule, said)):
-            continue
         told = None if rule is None else rule.told
+        kept = rule is not None and (agree(key, rule, said) or (bool(told) and kind_of(key) in _KEPT))
+        if weight is None or kept:
+            continue
         p = model_right(weight, said.p, told or 0.0, said.nats, said.told, learned=support.get(key, 0.0))
         if p >= needed(takes, told):
             found[key] = as_taken(said, p)

@@ -12,10 +12,11 @@ from sgcad_core.account.contacts import contact_items
 from sgcad_core.account.inputs import ExecutedCase, is_stated
 from sgcad_core.account.motion import motion_items
 from sgcad_core.account.notes import notes_of
-from sgcad_core.account.places import place_items
+from sgcad_core.account.places import _of_one_half, place_items
 from sgcad_core.account.unread_text import unread_items
 from sgcad_core.account.words import named, phrase, shown
 from sgcad_core.config import load
+from sgcad_core.reading.reading import read
 from sgcad_core.reading.text.normalise import split_sentences
 from sgcad_core.reading.text.traced_text import TracedText
 from sgcad_core.records.facts import Fact
@@ -228,6 +229,19 @@ def test_things_that_are_named_and_not_drawn_lack(made, text, field, value):
     sentences = split_sentences(TracedText.of(text))
     found = of(unread_items(replace(made, reading=replace(made.reading, sentences=sentences))), field)
     assert (found.value if found else None) == value
+
+
+@pytest.mark.parametrize(("road", "half"), [
+    ("V1 was northbound in lane 5 of a five-lane interstate.", True),
+    ("V1 was northbound in lane 3 of a four-lane road.", True),
+    ("V1 was northbound in lane 2 of a four-lane road.", False),
+    ("V1 was northbound in lane 3 of a four-lane, undivided road.", False),
+    ("V1 was northbound on a three-lane, divided road.", True),
+])  # fmt: skip
+def test_a_total_may_be_that_of_one_carriageway_where_the_words_allow_it(made, road, half):
+    reading = read(f"{road} V2 was northbound. The front of V1 struck the back of V2.")
+    drawn = replace(made, reading=reading)
+    assert _of_one_half(drawn, reading.roads.roads[0]) == half
 
 
 # ------------------------------------------------------------------ words

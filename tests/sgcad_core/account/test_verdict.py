@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -148,3 +149,17 @@ def test_a_swerve_that_nobody_tells_costs_the_verdict(text, counts) -> None:
 def test_other_notes_are_no_swerves() -> None:
     note = Note(kind="plan", subject="V2", text="V2 drives slower than stated")
     assert not list(untold_swerves(made("V1 was northbound. V2 was southbound. V1 struck V2."), [note]))
+
+
+@pytest.mark.parametrize(("told", "unread"), [
+    ("V2 was traveling south on a five-lane roadway.", False),
+    ("V2 was traveling south on a seven-lane roadway.", True),
+    ("V1 was in lane two, and V2 was ahead.", False),
+    ("V1 crossed the left lane line.", False),
+])  # fmt: skip
+def test_lanes_that_are_known_from_another_sentence_are_not_unread(told, unread) -> None:
+    text = f"V1 was traveling south in lane two of a five-lane road and crossed the centerline. {told} V1 struck V2."
+    one = made(text)
+    kept = tuple(fact for fact in one.reading.facts if fact.start is None or fact.start < text.index(told))
+    one.reading = replace(one.reading, facts=kept)
+    assert any(item.field == "text.lane" for item in unread_clauses(one)) == unread

@@ -79,6 +79,25 @@ def test_the_first_reading_stands_where_no_other_can_be_placed() -> None:
     assert least.notes() == ["doubt 1.5 on the first reading; tried no other; kept: the first reading"]
 
 
+@pytest.mark.parametrize(("text", "oddity", "gives_way"), [
+    ("V1 was eastbound. V2 drove. The front of V1 struck the right side of V2.", 2.5, True),
+    ("V1 was eastbound. V2 drove. The front of V1 struck the right side of V2.", 1.5, False),
+    ("V1 was eastbound. V2 was southbound. The front of V1 struck the right side of V2.", 2.5, False),
+])  # fmt: skip
+def test_a_heading_that_no_words_tell_gives_way_to_clearly_odd_driving(
+    text: str, oddity: float, gives_way: bool
+) -> None:
+    facts = read(text).crash
+
+    def turned_only(facts_: CrashFacts) -> BehaviorSpec:
+        if facts_.vehicles[1].heading == facts.vehicles[1].heading:
+            raise InvalidOutput("this reading cannot be placed")
+        return crossing()
+
+    least = least_doubted(facts, turned_only, GRAPH, scenario(oddity))
+    assert (least.facts.vehicles[1].heading != facts.vehicles[1].heading) == gives_way
+
+
 def test_a_contact_that_does_not_come_about_is_the_worst_doubt() -> None:
     met = scenario(0.2)
     assert met.behavior is not None

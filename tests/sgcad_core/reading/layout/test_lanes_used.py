@@ -28,6 +28,7 @@ def notes(text: str) -> tuple[str, ...]:
     ("V1 was traveling north in the middle lane. V2 was traveling north.", 3),
     ("V1 was traveling north in lane four. V2 was traveling north.", 4),
     ("V1 was traveling north. V2 was traveling north.", 1),
+    ("V1 was traveling north and changed lanes to the right. V2 was legally parked facing north.", 1),
 ])  # fmt: skip
 def test_a_road_has_the_lanes_that_are_used(text: str, lanes: int) -> None:
     found = legs(text + HIT)

@@ -21,6 +21,8 @@ TEXT = (
     "V1 was traveling north on a two-lane, two-way road. V2 was traveling south on the same road. The front of V1 "
     "struck the front of V2."
 )
+OPEN = TEXT.replace("traveling north on", "traveling on")
+"""The heading of V1 is inferred."""
 THIN = "V1 met V2. Both vehicles were towed after the crash."
 BELIEVED = {kind: Weights(differ=9.0, slope=0.0, agree=None) for kind in KINDS}
 KNOWN = {"road.legs[]": 1.0}
@@ -103,10 +105,16 @@ def test_what_the_text_tells_outright_weighs() -> None:
 def test_lane_and_way_out_of_a_vehicle_on_another_way_are_not_taken() -> None:
     said = answered(lane=1, exit_road="S", road="N")  # the model has V1 come from the north
     believed = {kind: BELIEVED[kind] for kind in ("lane", "exit")}
-    assert fused_with_answer(read(TEXT), Opinion(answered=said, weights=believed)) == read(TEXT)
-    with_heading = told(TEXT, said, believed | {"heading": BELIEVED["heading"]}).crash.vehicle("V1")
+    assert fused_with_answer(read(OPEN), Opinion(answered=said, weights=believed)) == read(OPEN)
+    with_heading = told(OPEN, said, believed | {"heading": BELIEVED["heading"]}).crash.vehicle("V1")
     assert with_heading is not None
     assert (with_heading.heading, with_heading.exit_heading) == ("S", "S")
+
+
+def test_a_told_heading_stays_whatever_the_model_believes() -> None:
+    one = told(TEXT, answered(road="N", maneuver="turn_left")).crash.vehicle("V1")
+    assert one is not None
+    assert (one.heading, one.heading_stated, one.maneuver) == ("N", True, "turn_left")
 
 
 def test_taken_values_are_facts_by_the_names_of_the_rules() -> None:
@@ -153,7 +161,8 @@ def test_on_a_road_that_the_model_lays_it_also_says_who_drives_in_which_lane(lan
 
 
 def test_who_is_taken_for_driving_another_way_gets_the_models_lane_there() -> None:
-    found = told(UNCOUNTED, answered(legs(*WIDE.legs, Leg(bearing="W", lanes_in=2, lanes_out=2)), road="W", lane=2))
+    untold = UNCOUNTED.replace("V1 was traveling north", "V1 was traveling on a road")
+    found = told(untold, answered(legs(*WIDE.legs, Leg(bearing="W", lanes_in=2, lanes_out=2)), road="W", lane=2))
     driver = found.crash.vehicle("V1")
     assert driver is not None
     assert (driver.heading, driver.lane) == ("E", 2)
