@@ -52,6 +52,8 @@ def _told(text: str) -> WalkDirection:
         return WalkDirection(way=compass_of(across["way"]))
     if hand := rule("walkers.from_hand").search(text):
         return WalkDirection(hand=hand["hand"].lower())
+    if rule("walkers.from_median").search(text):
+        return WalkDirection(hand="left")
     if goes := rule("walkers.walks").search(text) or rule("walkers.goes").search(text):
         return WalkDirection(way=compass_of(goes["way"]))
     side = rule("walkers.from_side").search(text)
