@@ -12,7 +12,7 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, line_m
 from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING
-from sgcad_core.planner.lines.departures import departs, on_the_road
+from sgcad_core.planner.lines.departures import departs, in_a_mouth, on_the_road
 from sgcad_core.planner.lines.path import Path
 
 _ZONE_M = 12.0
@@ -26,6 +26,8 @@ OUT_OF_GORE, _INTO_GORE_M = 0.5, 8.0
 """Cost of each metre between the encounter and the gore of one actor, and the distance into the gore."""
 _BEFORE_TURN_M = 12.0
 """Distance before a turn at which the box still points along the road: it starts to turn before the junction."""
+_IN_MOUTH = 0.6
+"""Cost of an encounter beside the road where another road joins, for one that leaves the road."""
 _IN_JUNCTION = 0.8
 """Cost of standing in a junction where a stop is told: drivers wait before it."""
 _UNSTEERED, _STEERED_M = 0.3, 0.4
@@ -51,7 +53,9 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
     if maneuver in ACROSS_LANES and drift.left_m:
         penalty = penalty + _UNMOVED * _unmoved(role, path, drift)
     if departs(maneuver, role.told.departs):
-        penalty = penalty + _NOT_SHOWN * on_the_road(role.course, drift.profile(path.s_m))
+        aside = drift.profile(path.s_m)
+        penalty = penalty + _NOT_SHOWN * on_the_road(role.course, aside)
+        penalty = penalty + _IN_MOUTH * in_a_mouth(role.course, path.s_m, aside)
     if drift.evades:
         penalty = penalty + _UNSTEERED * (np.abs(drift.profile(path.s_m) - drift.before_m) < _STEERED_M)
     return penalty

@@ -26,6 +26,8 @@ _STAYS: frozenset[Maneuver] = frozenset({"u_turn", "stopped", "parked", "backing
 _BEHIND_TURN_M = 12.0
 _LEAST_MEDIAN_M, _BESIDE_M = 0.6, 1.0
 """Width from which a median is one, and how far over the edge of its lanes a vehicle in a narrow one is."""
+_MOUTH_M = 2.0
+"""Before and behind a junction, on which a vehicle beside the road is in the road that joins there."""
 _BEFORE_M, _BEND_RAD = 40.0, math.radians(4.0)
 """Length before the place over which a bend shows, and its least angle."""
 
@@ -75,3 +77,13 @@ def on_the_road(course: Course, left_m: Floats) -> NDArray[np.bool_]:
     within: NDArray[np.bool_] = (left_m < course.left_edge_m) & (-left_m < course.right_edge_m)
     median = (left_m > course.own_left_m) & (left_m < course.own_left_m + course.median_m)
     return within & ~median
+
+
+def in_a_mouth(course: Course, s_m: Floats, left_m: Floats) -> NDArray[np.bool_]:
+    """(n,) whether offsets from its line at stations lie beside its road at a junction: in a road that joins there."""
+    beside = ~on_the_road(course, left_m)
+    mouth = np.zeros(len(s_m), dtype=bool)
+    for crossed in course.passages:
+        if crossed.is_junction:
+            mouth |= (s_m > crossed.entry_m - _MOUTH_M) & (s_m < crossed.exit_m + _MOUTH_M)
+    return beside & mouth

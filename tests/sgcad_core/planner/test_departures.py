@@ -7,16 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.planner.lines.actor_course import find_course
-from sgcad_core.planner.lines.departures import aside_m, departs, departure_sides, on_the_road, side_of
+from sgcad_core.planner.lines.departures import aside_m, departs, departure_sides, in_a_mouth, on_the_road, side_of
 from sgcad_core.planner.plan import plan
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
+from tests.sgcad_core.planner.crash_scenes import network
 
 
 def roads(bend=("none", "none"), **leg):
@@ -94,3 +97,18 @@ def test_without_a_contact_the_road_is_left_before_the_vehicle_rolls_over():
     assert float(car.x_m[int(rolled.argmax())]) > 3.6
     (kept,) = plan(ALONE, roads(), courses={"V1": replace(told, departs=None)}).trajectories
     assert float(kept.x_m.max()) < 3.6
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.sampled_from([("tee", "W"), ("four_leg", "S"), ("tee_wide", "S")]), st.floats(-60, 60), st.floats(-9, 9))
+def test_beside_the_road_at_a_junction_is_the_mouth_of_another_road(where, ahead_m, left_m):
+    layout, road = where
+    course = find_course(network(layout), CAR.model_copy(update={"road": road, "exit_road": None}))
+    crossed = next(p for p in course.passages if p.is_junction)
+    station = (crossed.entry_m + crossed.exit_m) / 2 + ahead_m
+    found = bool(in_a_mouth(course, np.array([station]), np.array([left_m]))[0])
+    off_m = max(left_m - course.left_edge_m, -left_m - course.right_edge_m)
+    if off_m < -0.01:
+        assert not found, "on the road"
+    elif off_m > 0.01:
+        assert found == (crossed.entry_m - 2.0 < station < crossed.exit_m + 2.0)
