@@ -19,6 +19,7 @@ from PIL import Image
 from safetensors import SafetensorError, safe_open
 
 from plugins.backbone import hf_adapter
+from plugins.backbone.engine.supported import refusal
 from sgcad_core import settings
 from sgcad_core.entry_points import catalogue
 from sgcad_core.errors import ConfigError, MissingTool
@@ -58,17 +59,18 @@ def load(
     """
     tf.utils.logging.disable_progress_bar()
     place = _place(name)
+    config = config_of(name, place, revision)
     tokenizer = _tokenizer(place, revision)
+    prepare = _prepare(place, revision) if hasattr(config, "vision_config") else None
     if adapter:
         hf_adapter.folder_of(adapter)
-    model = _model(place, revision, _with_dtype(options, device), quantization)
+    kind = tf.AutoModelForImageTextToText if hasattr(config, "vision_config") else tf.AutoModelForCausalLM
+    model = _model(kind, place, revision, _with_dtype(options, device), quantization)
     if adapter:
         model = hf_adapter.merged(model, adapter)
     if not options.get("device_map") and quantization == "none":
         model = model.to(_device(device))
     model.eval()
-    sees = hasattr(model.config, "vision_config")
-    prepare = _prepare(place, revision) if sees else None
     return Loaded(model, tokenizer, _template(tokenizer, place, revision), prepare, _evidence_heads(place, model))
 
 
@@ -115,14 +117,28 @@ def _tokenizer(place: str, revision: str | None, field: str = "backbone.model") 
     return found
 
 
-def _model(place: str, revision: str | None, options: dict[str, Any], quantization: str) -> Any:
+def config_of(name: str, place: str, revision: str | None) -> Any:
+    """The model's configuration. Raises ConfigError for a family that cannot be run, before any weight is read."""
+    try:
+        config = tf.AutoConfig.from_pretrained(place, revision=revision)
+    except (OSError, ValueError, ImportError, KeyError) as fault:
+        raise _not_loaded(place, fault) from fault
+    if reason := refusal(config):
+        raise ConfigError(f"backbone.model {name}: {reason}")
+    if hasattr(config, "vision_config") and type(config) not in tf.AutoModelForImageTextToText._model_mapping:
+        raise ConfigError(
+            f"backbone.model {name}: transformers {tf.__version__} has no image-text-to-text model of type "
+            f"{config.model_type}; use another family"
+        )
+    return config
+
+
+def _model(kind: Any, place: str, revision: str | None, options: dict[str, Any], quantization: str) -> Any:
     if quantization != "none":
         options |= {"quantization_config": _quantization(quantization)}
     if options.get("device_map"):
         _need("accelerate", "backbone.device_map")
     try:
-        config = tf.AutoConfig.from_pretrained(place, revision=revision)
-        kind = tf.AutoModelForImageTextToText if hasattr(config, "vision_config") else tf.AutoModelForCausalLM
         return kind.from_pretrained(place, revision=revision, **options)
     except (OSError, ValueError, ImportError, KeyError) as fault:
         raise _not_loaded(place, fault) from fault
@@ -180,12 +196,12 @@ def _prepare(place: str, revision: str | None) -> Prepare:
         return _own(own, Path(place))
     try:
         processor = tf.AutoImageProcessor.from_pretrained(place, revision=revision, backend="pil")
-    except ImportError as fault:
-        raise ConfigError(
-            f"backbone.model {place}: its image processor has no version without torchvision ({fault}); use Qwen-VL, "
-            "Llama-Vision, Idefics3, SmolVLM or LLaVA"
-        ) from fault
-    except (OSError, ValueError) as fault:
+    except (OSError, ValueError, ImportError) as fault:
+        if "torchvision" in str(fault):
+            raise ConfigError(
+                f"backbone.model {place}: its image processor exists for torchvision only; use a family of "
+                "docs/families.md that passes"
+            ) from fault
         raise _not_loaded(place, fault) from fault
     if type(processor).__name__.startswith(("Idefics3", "SmolVLM")):
         return lambda picture, view: processor(

@@ -19,6 +19,7 @@ from PIL import Image
 
 from plugins.backbone.engine.records import Picture, Prompt
 from plugins.backbone.hf_load import Loaded
+from plugins.backbone.hf_placeholders import spelling_of
 from plugins.backbone.prompt import Parts
 from sgcad_core.case.records import Diagram
 from sgcad_core.errors import ConfigError
@@ -51,8 +52,11 @@ class Prompter:
             {t.content for t in self.tokenizer.added_tokens_decoder.values() if t.special}, key=len, reverse=True
         )
         self.image_text = self.tokenizer.convert_ids_to_tokens(family.image_token) if loaded.prepare else None
+        self.spelling = spelling_of(loaded.model.config, self.tokenizer) if loaded.prepare else None
+        self.shown_text = (self.spelling.shown if self.spelling else None) or self.image_text
+        self.shown = self.tokenizer.convert_tokens_to_ids(self.shown_text) if self.shown_text else None
         self.kept: OrderedDict[str, Picture] = OrderedDict()
-        self.lock, self.spelling = threading.Lock(), threading.Lock()
+        self.lock, self.tokenizing = threading.Lock(), threading.Lock()
         self.layouts: dict[str, tuple[int, int]] = {}
 
     @property
@@ -66,10 +70,10 @@ class Prompter:
         """Token ids and pictures in one of their views. Raises ConfigError if the template drops a picture."""
         pictures = [self.picture(diagram, view) for diagram in parts.diagrams] if self.loaded.prepare else []
         ids = self.spelled(parts, len(pictures))
-        shown = ids.count(self.family.image_token) if self.family.image_token is not None else 0
+        shown = ids.count(self.shown) if self.shown is not None else 0
         if shown != len(pictures):
             raise ConfigError(
-                f"the chat template shows {shown} of {len(pictures)} pictures (placeholder {self.image_text!r}); "
+                f"the chat template shows {shown} of {len(pictures)} pictures (placeholder {self.shown_text!r}); "
                 "use a model whose template knows content of type image"
             )
         return Prompt(self._expanded(ids, pictures), pictures)
@@ -123,11 +127,12 @@ class Prompter:
             chat_template=self.loaded.template,
             tokenize=False,
             add_generation_prompt=True,
+            enable_thinking=False,
         )
-        return text
+        return thought(text)
 
     def _joined(self, blocks: list[str | None]) -> str:
-        return "".join(self.image_text or "" if block is None else block for block in blocks)
+        return "".join(self.shown_text or "" if block is None else block for block in blocks)
 
     def _plain(self, parts: Parts, pictures: int) -> str:
         return f"{self._joined(self._blocks(parts, pictures)).rstrip()}{_GAP}Answer:\n"
@@ -150,7 +155,7 @@ class Prompter:
 
     def _tokenized(self, text: str, add: bool) -> list[int]:
         """Token ids of a text; under a lock, since a fast tokenizer is one mutable object."""
-        with self.spelling:
+        with self.tokenizing:
             found: list[int] = self.tokenizer(text, add_special_tokens=add)["input_ids"]
         return found
 
@@ -172,6 +177,8 @@ class Prompter:
         if "rows" in found:
             self.layouts[digest] = (int(found["rows"][0][0]), int(found["cols"][0][0]))
         layout = ("rows", "cols", "num_tiles")
+        if isinstance(found.get("image_sizes"), list):
+            found["image_sizes"] = torch.tensor(found["image_sizes"])
         tensors = {k: v for k, v in found.items() if isinstance(v, torch.Tensor) and k not in layout}
         return Picture(digest, tensors)
 
@@ -180,16 +187,22 @@ class Prompter:
         found: list[int] = []
         left = iter(pictures)
         for token in ids:
-            found += self._placeholders(next(left)) if token == self.family.image_token and pictures else [token]
+            found += self._placeholders(next(left)) if token == self.shown and pictures else [token]
         return found
 
     def _placeholders(self, picture: Picture) -> list[int]:
         count = self.family.tokens_of(picture)
+        assert self.spelling is not None  # noqa: S101 -- there are pictures
         if picture.digest not in self.layouts:
-            return [int(self.family.image_token or 0)] * count
+            return self._tokenized(self.spelling.spell(str(self.image_text), count, picture), add=False)
         rows, columns = self.layouts[picture.digest]
         text = tiled(rows, columns, str(self.image_text) * (count // (rows * columns + 1)))
         return self._tokenized(text, add=False)
+
+
+def thought(text: str) -> str:
+    """A prompt whose template has opened a block of thoughts, with the block closed: the answer begins behind it."""
+    return f"{text.rstrip()}\n\n</think>\n\n" if text.rstrip().endswith("<think>") else text
 
 
 def _content(blocks: Sequence[str | None]) -> list[dict[str, str]]:

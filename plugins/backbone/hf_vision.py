@@ -15,7 +15,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from plugins.backbone import hf_gguf, hf_run
+from plugins.backbone import hf_gguf, hf_machine, hf_run
 from plugins.backbone.prompt import Parts, parts, subject, with_previous
 from sgcad_core import settings
 from sgcad_core.case.records import Context, Generation, Query
@@ -38,7 +38,7 @@ class HfVision(Backbone):
     """
 
     gives_logits: ClassVar[bool] = True
-    version: ClassVar[str] = "2"
+    version: ClassVar[str] = "3"
     model: str = Field(
         min_length=1, description="folder or .gguf file (also from the project's root), package:NAME/FILE.gguf, or id"
     )
@@ -86,6 +86,10 @@ class HfVision(Backbone):
     def load(self) -> None:
         """Imports the libraries and loads the weights now instead of at the first question."""
         self._loaded()
+
+    def offers(self, decoder: Decoder) -> tuple[str, ...]:
+        """What this machine lacks for the model: weights, packages. Raises ConfigError for a family that cannot run."""
+        return hf_machine.lacks(self.model, self.revision, self.device_map, self.quantization)
 
     def weights_gb(self) -> float | None:
         """Memory of the weights, decimal GB, by the folder's files, else by the number of parameters in the name."""

@@ -101,8 +101,8 @@ def reference(model: Any, family: Family, prompt: Prompt, behind: Sequence[int] 
     """Logits (1 + behind, vocabulary) from the prompt's last token on: one forward, no cache, its own positions."""
     ids = torch.tensor([[*prompt.ids, *behind]], device=model.device)
     inputs = family.to_model(forward_inputs(prompt.pictures))
-    if prompt.pictures and family.dimensions > 1:
-        inputs["mm_token_type_ids"] = ids.eq(family.image_token or 0).int()
+    if prompt.pictures and family.kinds_argument:
+        inputs[family.kinds_argument] = ids.eq(family.image_token or 0).int()
     if prompt.pictures and isinstance(family, CrossAttentionFamily):
         whole = Prompt(ids[0].tolist(), prompt.pictures)
         inputs["cross_attention_mask"] = family.visible(whole)[None].to(model.device)

@@ -19,10 +19,11 @@ from weakref import WeakKeyDictionary
 import torch
 from torch import Tensor
 
-from plugins.backbone.engine.faults import TooLong
+from plugins.backbone.engine import supported
 from plugins.backbone.engine.records import Picture, Prompt
 
 _KEPT_PICTURES = 64
+_WHOLE_PICTURES = ("gemma3",)
 Positions = Tensor
 """(dimensions, tokens): one dimension, or time, height and width (M-RoPE)."""
 
@@ -32,6 +33,10 @@ class Family(ABC):
 
     cross_layers: Sequence[int] = ()
     dimensions = 1
+    kinds_argument: str | None = None
+    """The model's argument that says which tokens are a picture's, where its whole forward pass needs it."""
+    whole_pictures = False
+    """Whether the tokens of a picture see each other in both directions (Gemma 3)."""
 
     def __init__(self, model: Any) -> None:
         self.model = model
@@ -114,6 +119,8 @@ class InlineFamily(Family):
         self.core = getattr(model, "model", model)
         self.mrope = hasattr(self.core, "get_rope_index")
         self.dimensions = 3 if self.mrope else 1
+        self.whole_pictures = model.config.model_type in _WHOLE_PICTURES
+        self.kinds_argument = "mm_token_type_ids" if self.mrope else "token_type_ids" if self.whole_pictures else None
         encoder = getattr(self.core, "get_image_features", None)
         self.encoder_arguments = set(inspect.signature(encoder).parameters) if encoder else set()
         self.takes_features = "mm_encoder_outputs" in inspect.signature(self.core.forward).parameters
@@ -217,8 +224,9 @@ def forward_inputs(pictures: Sequence[Picture]) -> dict[str, Any]:
     """The image processor's tensors of several pictures as the model's forward takes them."""
     if not pictures:
         return {}
+    listed = "image_sizes" in pictures[0].inputs  # LLaVA-NeXT: the first dimension is the pictures
     return {
-        name: torch.cat([p.inputs[name] for p in pictures], dim=1 if _batched(name, value) else 0)
+        name: torch.cat([p.inputs[name] for p in pictures], dim=1 if _batched(name, value) and not listed else 0)
         for name, value in pictures[0].inputs.items()
     }
 
@@ -232,23 +240,8 @@ def _batched(name: str, value: Tensor) -> bool:
 
 def family_of(model: Any) -> Family:
     """The family of a model. Raises TooLong for layers whose state is no list of keys and values."""
-    text = model.config.get_text_config()
-    kinds = set(getattr(text, "layer_types", None) or ["full_attention"])
-    if strange := kinds - {"full_attention", "sliding_attention", "cross_attention"}:
-        raise TooLong(
-            f"{type(model).__name__} has layers of kind {', '.join(sorted(strange))}: their memory cannot be cut back "
-            "or shared; use a model with attention layers only"
-        )
+    supported.check(model.config)
     return CrossAttentionFamily(model) if model.config.model_type == "mllama" else InlineFamily(model)
-
-
-def window_of(model: Any) -> int:
-    """The most tokens that the model can hold: its trained positions, or its sliding window if that is smaller."""
-    text = model.config.get_text_config()
-    found = int(getattr(text, "max_position_embeddings", 0) or 0) or 1 << 30
-    if "sliding_attention" in (getattr(text, "layer_types", None) or ()):
-        found = min(found, int(text.sliding_window))
-    return found
 
 
 def _visible_spans(spans: Sequence[tuple[int, int]], length: int) -> list[tuple[int, int]]:
@@ -262,7 +255,9 @@ def _visible_spans(spans: Sequence[tuple[int, int]], length: int) -> list[tuple[
 
 def _join_features(found: Sequence[Any]) -> Any:
     """Features of several pictures as transformers would have given them at once."""
-    joined = SimpleNamespace(pooler_output=[part for one in found for part in one.pooler_output])
+    whole = all(isinstance(one.pooler_output, Tensor) for one in found)
+    parts = [part for one in found for part in one.pooler_output]
+    joined = SimpleNamespace(pooler_output=torch.stack(parts) if whole else parts)
     if hasattr(found[0], "deepstack_features"):
         layers = zip(*(one.deepstack_features for one in found), strict=True)
         joined.deepstack_features = [[part for one in layer for part in one] for layer in layers]

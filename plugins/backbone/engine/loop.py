@@ -17,12 +17,13 @@ from typing import Any
 
 import torch
 
-from plugins.backbone.engine.families import Family, window_of
+from plugins.backbone.engine.families import Family
 from plugins.backbone.engine.faults import BadLogits, EngineFault, TooBig, tried
 from plugins.backbone.engine.job import Job
 from plugins.backbone.engine.records import Answer, Request
 from plugins.backbone.engine.runner import Runner
 from plugins.backbone.engine.scoring import ScoredChunk, averaged, score_chunks
+from plugins.backbone.engine.supported import window_of
 
 _GUESSES = 64
 """Guessed tokens a step, shared by the reports in it: more would cost more than they save."""

@@ -18,6 +18,7 @@ from plugins.backbone.engine.cache import SlotCache, Window
 from plugins.backbone.engine.families import Family
 from plugins.backbone.engine.prefix import SHORTEST, Key, PrefixStore, prompt_key
 from plugins.backbone.engine.records import Prompt
+from plugins.backbone.engine.supported import sliding_of
 
 
 @dataclass(eq=False)
@@ -56,6 +57,7 @@ class Runner:
         self.calls = 0
         text = model.config.get_text_config()
         self.layers = int(text.num_hidden_layers)
+        self.sliding = sliding_of(model)
         self.bool_mask = getattr(text, "_attn_implementation", "sdpa") != "eager"
         self.last: Tensor | None = None
         """What the output embedding got in the last pass, (rows, width, hidden), once `watch` was called."""
@@ -163,7 +165,8 @@ class Runner:
         cache = row.lane.cache
         base = row.slot * cache.capacity
         cache.look_at(Window(row.slot, 1, end, start, torch.arange(base + start, base + end)))
-        mask = None if start == 0 else self._mask([start], len(tokens), end)
+        plain = start == 0 and not (self.family.whole_pictures and row.spans)
+        mask = None if plain else self._mask([start], len(tokens), end, row.spans)
         self._run([list(tokens)], self._positions([row], len(tokens)), mask, cache, {**extra, "logits_to_keep": 1})
         row.length = end
 
@@ -181,7 +184,12 @@ class Runner:
         return self._run(padded, self._positions(lane.rows, width), mask, lane.cache, extra)
 
     def _run(
-        self, ids: list[list[int]], positions: Tensor, mask: Tensor | None, cache: SlotCache, extra: dict[str, Any]
+        self,
+        ids: list[list[int]],
+        positions: Tensor,
+        mask: Tensor | dict[str, Tensor] | None,
+        cache: SlotCache,
+        extra: dict[str, Any],
     ) -> Tensor:
         self.calls += 1
         device = self.model.device
@@ -201,15 +209,36 @@ class Runner:
         found = torch.stack([_positions_from(row, row.length, width) for row in rows], dim=1)
         return found if self.family.dimensions > 1 else found[0]
 
-    def _mask(self, lengths: Sequence[int], width: int, keys: int) -> Tensor:
-        """(rows, 1, width, keys), True where a key is seen: the row's own tokens up to the query."""
+    def _mask(
+        self, lengths: Sequence[int], width: int, keys: int, spans: Sequence[tuple[int, int]] = ()
+    ) -> Tensor | dict[str, Tensor]:
+        """(rows, 1, width, keys), True where a key is seen: the row's own tokens up to the query.
+
+        By kind of layer where some slide over the last tokens only. `spans`: pictures of the first row, whose tokens
+        see each other where the family says so.
+        """
         device = self.model.device
         last = torch.tensor(lengths, device=device)[:, None] + torch.arange(width, device=device)
-        seen = torch.arange(keys, device=device) <= last[:, None, :, None]
+        places = torch.arange(keys, device=device)
+        seen = places <= last[:, None, :, None]
+        if self.sliding is None:
+            return self._typed(self._whole(seen, lengths[0], spans))
+        near = seen & (places > last[:, None, :, None] - self.sliding)
+        kinds = {"full_attention": seen, "sliding_attention": near}
+        return {kind: self._typed(self._whole(mask, lengths[0], spans)) for kind, mask in kinds.items()}
+
+    def _whole(self, seen: Tensor, start: int, spans: Sequence[tuple[int, int]]) -> Tensor:
+        """The mask with the tokens of each picture of the stretch open to each other."""
+        for first, end in spans if self.family.whole_pictures else ():
+            if first >= start and end <= start + seen.shape[2]:
+                seen[0, 0, first - start : end - start, first:end] = True
+        return seen
+
+    def _typed(self, seen: Tensor) -> Tensor:
         if self.bool_mask:
             return seen
         dtype = self.model.dtype
-        return torch.zeros(seen.shape, dtype=dtype, device=device).masked_fill(~seen, torch.finfo(dtype).min)
+        return torch.zeros(seen.shape, dtype=dtype, device=seen.device).masked_fill(~seen, torch.finfo(dtype).min)
 
 
 def _positions_from(row: Row, start: int, width: int) -> Tensor:

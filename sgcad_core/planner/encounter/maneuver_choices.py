@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
-from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.actor_plan import (
     Drift,
     Role,
@@ -22,14 +21,22 @@ from sgcad_core.planner.encounter.out_of_lanes import is_out
 from sgcad_core.planner.encounter.pacing_choices import from_another_road
 from sgcad_core.planner.lines.box_angles import SKIDS, STEERS
 from sgcad_core.planner.lines.crossing import LEAVES, crossings, end_meets_flank
-from sgcad_core.planner.lines.departures import DEPARTURES, aside_m, departs, departure_sides
+from sgcad_core.planner.lines.departures import (
+    DEPARTURES,
+    GENTLY,
+    SWERVE_MPS2,
+    aside_m,
+    departs,
+    departure_sides,
+    room_before_m,
+    shift_length_m,
+    still_leaving,
+)
 from sgcad_core.planner.lines.path import ramp_length_m
 from sgcad_core.planner.lines.told_moves import last_move, with_earlier
 from sgcad_core.planner.lines.turning import corner_lines
 from sgcad_core.records.course import Move, Steering
 
-SWERVE_MPS2 = 6.0
-"""Lateral acceleration that gives the length of a swerve; the speed follows from friction."""
 _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
 _NOT_EVADING, _WITHOUT_MOVES = 0.3, 1.5
 """Costs of the own line where steering aside is stated, and of a line without the moves that are told."""
@@ -126,8 +133,14 @@ def _behind(first: Sequence[Drift], others: Iterable[Drift]) -> list[Drift]:
 
 def _shifts(role: Role, left_m: float, shares: Sequence[tuple[float, float]]) -> Iterator[Drift]:
     """Shares of a shift with their costs: gently, and the first three also hard and sharply."""
-    for ease, more, count in ((1.7, 0.0, None), (1.0, 0.12, 3), (0.6, 0.4, 3)):
-        yield from (_drift(role, left_m * share, cost + more, ease) for share, cost in shares[:count])
+    for share, cost, ease in _eased(shares):
+        yield _drift(role, left_m * share, cost, ease)
+
+
+def _eased(shares: Sequence[tuple[float, float]]) -> Iterator[tuple[float, float, float]]:
+    """Shares with their costs and an ease."""
+    for ease, more, count in ((GENTLY, 0.0, None), (1.0, 0.12, 3), (0.6, 0.4, 3)):
+        yield from ((share, cost + more, ease) for share, cost in shares[:count])
 
 
 def _departures(role: Role, *, fine: bool) -> list[Drift]:
@@ -137,7 +150,9 @@ def _departures(role: Role, *, fine: bool) -> list[Drift]:
     sides = departure_sides(role.course, role.place.station_m, role.told.departs or "either")
     for rank, side in enumerate(sides):
         wide = aside_m(role.course, side)
-        found += _shifts(role, wide, [(share, cost + _OTHER_SIDE * rank) for share, cost in shares])
+        for share, cost, ease in _eased(shares):
+            drift = _drift(role, wide * share, cost + _OTHER_SIDE * rank, ease)
+            found.append(still_leaving(role, drift, ease))
     if role.actor.maneuver in TURNING:
         found = [drift._replace(length_m=min(drift.length_m, _OFF_BEHIND_TURN_M)) for drift in found]
     return sorted([*found, Drift(_STAYS_ON_ROAD)], key=lambda drift: drift.cost)
@@ -222,8 +237,7 @@ def _maneuver_shift(role: Role) -> float | None:
 def _drift(role: Role, left_m: float, cost: float, ease: float, note: str = "") -> Drift:
     """A drift as long as its lateral acceleration allows: ease 1 is hard, more is gentler; longer on snow and ice."""
     dry = ramp_length_m(left_m, ease * usual_speed(role), SWERVE_MPS2)
-    room = role.place.station_m - role.course.first_m - usual_speed(role)
-    length = min(dry * math.sqrt(max(DRIVING.friction_mps2(None) / role.grip_mps2, 1.0)), max(room, dry))
+    length = min(shift_length_m(role, left_m, ease), max(room_before_m(role), dry))
     return Drift(cost, left_m, length, role.place.station_m, note=note)
 
 

@@ -1,4 +1,4 @@
-"""On which side of the road a vehicle leaves it, and how far beside its lane it then is.
+"""On which side of the road a vehicle leaves it, how far beside its lane it then is, and over which length.
 
 Knows one course and what is told of one vehicle; no other actor and no time.
 """
@@ -13,14 +13,23 @@ from numpy.typing import NDArray
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.kinds import Maneuver
 from sgcad_core.metrics.road_departure import hand_of
+from sgcad_core.metrics.thresholds import DRIVING
+from sgcad_core.planner.actor_plan import Drift, Role, usual_speed
 from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.lines.path import ramp_length_m
 from sgcad_core.records.course import DepartureSide
 
 OFF_ROAD_M = 4.0
 """From the edge of the road to a vehicle that has left it."""
 DEPARTURES: dict[Maneuver, int] = {"departing_road_left": 1, "departing_road_right": -1}
 """Maneuvers off the road, and the side: 1 to the left."""
+SWERVE_MPS2 = 6.0
+"""Lateral acceleration that gives the length of a swerve; the speed follows from friction."""
+GENTLY = 1.7
+"""Ease of an ordinary change of line; 1 is hard."""
+_STILL_S = 1.0
+"""Time on its undisturbed line before it leaves it."""
 _STAYS: frozenset[Maneuver] = frozenset({"u_turn", "stopped", "parked", "backing"})
 """Maneuvers with a line of their own, or none, from which the road is not left."""
 _BEHIND_TURN_M = 12.0
@@ -87,3 +96,36 @@ def in_a_mouth(course: Course, s_m: Floats, left_m: Floats) -> NDArray[np.bool_]
         if crossed.is_junction:
             mouth |= (s_m > crossed.entry_m - _MOUTH_M) & (s_m < crossed.exit_m + _MOUTH_M)
     return beside & mouth
+
+
+def shift_length_m(role: Role, left_m: float, ease: float) -> float:
+    """The length of a shift to the left at the usual speed: ease 1 is hard, more is gentler; longer on snow and ice."""
+    dry = ramp_length_m(left_m, ease * usual_speed(role), SWERVE_MPS2)
+    return dry * math.sqrt(max(DRIVING.friction_mps2(None) / role.grip_mps2, 1.0))
+
+
+def room_before_m(role: Role) -> float:
+    """The way along its road before its place on which a line may change, metres."""
+    return role.place.station_m - role.course.first_m - _STILL_S * usual_speed(role)
+
+
+def still_leaving(role: Role, drift: Drift, ease: float) -> Drift:
+    """A way off the road that is half done at the place, where its road is too short for the whole of it: the vehicle
+    keeps its speed and meets what stands there as it drifts away, since ice allows no sharper line."""
+    if drift.length_m >= shift_length_m(role, drift.left_m, ease):
+        return drift
+    length = min(shift_length_m(role, 2 * drift.left_m, ease), max(2 * room_before_m(role), drift.length_m))
+    return drift._replace(left_m=2 * drift.left_m, length_m=length, end_m=drift.end_m + length / 2)
+
+
+def way_off_m(role: Role) -> float:
+    """The way along its road that a departure takes on a slippery surface, metres; 0 where there is room for it or the
+    road is not left."""
+    if not departs(role.actor.maneuver, role.told.departs) or role.actor.maneuver in TURNING:
+        return 0.0
+    side = departure_sides(role.course, role.place.station_m, role.told.departs or "either")[0]
+    wide = aside_m(role.course, side)
+    slippery = role.grip_mps2 < DRIVING.friction_mps2(None)
+    if not slippery or shift_length_m(role, wide, GENTLY) <= room_before_m(role):
+        return 0.0
+    return shift_length_m(role, 2 * wide, GENTLY) / 2 + _STILL_S * usual_speed(role)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from sgcad_core.kinds import Maneuver
 from sgcad_core.planner.actor_plan import Drift, Role, Swing, usual_speed
-from sgcad_core.planner.lines.departures import departure_sides
+from sgcad_core.planner.lines.departures import departure_sides, way_off_m
 from sgcad_core.planner.lines.path import ramp_length_m
 from sgcad_core.planner.motion import HARD_MPS2
 from sgcad_core.records.course import Move
@@ -63,11 +63,13 @@ def with_earlier(role: Role, lines: Sequence[Drift]) -> Iterator[Drift]:
 
 
 def with_room(role: Role) -> Role:
-    """The role with its place so far along its road that all told moves have room before it."""
-    if last_move(role) is None:
-        return role
+    """The role with its place so far along its road that all told moves, or a way off a slippery road, have room
+    before it."""
     place, course = role.place.station_m, role.course
-    needed_m = sum(swing.length_m for swing in _swings(role, _targets(role), place, 1.0)) + _still_m(role)
+    if last_move(role) is not None:
+        needed_m = sum(swing.length_m for swing in _swings(role, _targets(role), place, 1.0)) + _still_m(role)
+    elif not (needed_m := way_off_m(role)):
+        return role
     further = min(course.first_m + needed_m, course.end_m - _BEHIND_M)
     return replace(role, place=role.place._replace(station_m=max(place, further)))
 

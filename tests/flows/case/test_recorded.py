@@ -23,16 +23,11 @@ QUICK = (
     "near_lane_change",
     "wrong_way_leg",
 )
-OPEN = {
-    "guardrail": "a told speed is not reached on ice",
-}
-"""Right answers that the chain does not take yet."""
 
 
 def params():
     for name in CASES:
         marks = [] if name in QUICK else [pytest.mark.slow]
-        marks += [pytest.mark.xfail(reason=OPEN[name], strict=True)] if name in OPEN else []
         yield pytest.param(name, marks=marks)
 
 

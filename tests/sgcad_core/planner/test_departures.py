@@ -13,12 +13,16 @@ from hypothesis import strategies as st
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
+from sgcad_core.planner.actor_plan import Role
+from sgcad_core.planner.encounter.meeting_place import Place
 from sgcad_core.planner.lines.actor_course import find_course
 from sgcad_core.planner.lines.departures import aside_m, departs, departure_sides, in_a_mouth, on_the_road, side_of
+from sgcad_core.planner.lines.told_moves import with_room
 from sgcad_core.planner.plan import plan
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
+from sgcad_core.units import MPS_PER_MPH
 from tests.sgcad_core.planner.crash_scenes import network
 
 
@@ -112,3 +116,27 @@ def test_beside_the_road_at_a_junction_is_the_mouth_of_another_road(where, ahead
         assert not found, "on the road"
     elif off_m > 0.01:
         assert found == (crossed.entry_m - 2.0 < station < crossed.exit_m + 2.0)
+
+
+@pytest.mark.parametrize("surface", ["dry", "wet", "snow", "ice"])
+@pytest.mark.parametrize("mph", [35, 55])
+def test_a_told_speed_is_driven_off_the_road_whatever_the_surface(surface, mph):
+    car = CAR.model_copy(update={"speed_mph": mph})
+    spec = HITS_TREE.model_copy(update={"actors": (car, TREE), "surface": surface})
+    made = plan(spec, roads(), courses={"V1": CourseTold(departs="right")})
+    assert made.realised
+    (driven,) = (t for t in made.trajectories if t.actor == "V1")
+    times, x, y = (np.array(v) for v in (driven.t_s, driven.x_m, driven.y_m))
+    before = times[1:] <= made.contact.t_s
+    speed = (np.hypot(np.diff(x), np.diff(y)) / np.diff(times))[before]
+    assert np.abs(speed - mph * MPS_PER_MPH).min() < 0.05 * mph * MPS_PER_MPH
+    assert float(x[1:][before][-1]) > 3.6
+
+
+def test_a_road_that_is_long_enough_or_dry_keeps_the_place_of_the_departure():
+    place, told = Place(100.0, 0.0, 0.0, 0.0), CourseTold(departs="right")
+    role = Role(CAR, find_course(roads(), CAR), (4.5, 1.8), place, told=told)
+    assert with_room(role) is role
+    icy = replace(role, surface="ice", actor=CAR.model_copy(update={"speed_mph": 55}))
+    assert with_room(icy).place.station_m > 100.0
+    assert with_room(replace(icy, place=role.place._replace(station_m=300.0))).place.station_m == 300.0
