@@ -222,7 +222,8 @@ class _Cast:
         """Lets a thing that is struck first give way where its vehicle strikes something else after it."""
         track, goes_on = scene.tracks[first.struck], any(first.striker in pair_of(c) for c in self.contacts[1:])
         if track.motion.fixed and goes_on:
-            track.let_pass(stays=is_passed(self.actors[first.struck], first.striker_area))
+            thing = self.actors[first.struck]
+            track.let_pass(glances=is_passed(thing, first.striker_area), stays=thing.firm)
 
     def _look(self, scene: Scene, pair: Iterable[tuple[Option, Motion, float]]) -> None:
         """Notes which stated maneuvers and evasions are not visible before the contact."""
