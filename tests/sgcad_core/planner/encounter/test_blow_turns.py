@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sgcad_core.planner.aftermath.rest_fit import IMPACTS
 from sgcad_core.planner.encounter.blow_turns import misturned, turns_told
 from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.encounter_search import along_sides
@@ -48,4 +49,12 @@ def test_only_a_told_rotation_or_facing_is_looked_for() -> None:
     assert not turns_told(places(CourseTold())[0])
     assert turns_told(places(CourseTold(spin="clockwise"))[0])
     assert turns_told(places(CourseTold(rest=RestTold(facing_deg=90.0)))[0])
-    assert misturned(places(CourseTold())[0]) == 0.0
+    assert misturned(places(CourseTold())[0])[0] == 0.0
+
+
+def test_of_several_frictions_that_is_taken_which_turns_the_vehicle_most_as_told() -> None:
+    found = places(CourseTold(spin="clockwise", spin_deg=300.0))[0]
+    each = {impact: misturned(found, [impact])[0] for impact in IMPACTS}
+    off, best = misturned(found, IMPACTS)
+    assert off == min(each.values()) == each[best]
+    assert off < max(each.values())
