@@ -123,8 +123,10 @@ class _Cast:
 
     @property
     def wandering(self) -> list[str]:
-        """Those of which several moves are told."""
-        return [name for name in self.actors if self.told.get(name, CourseTold()).moves]
+        """Those of which several moves are told, or that leave the road and touch nothing."""
+        alone = not (self.possible or self.behavior.near_crash)
+        told = ((a, self.told.get(a.id, CourseTold())) for a in self.behavior.actors)
+        return [a.id for a, its in told if its.moves or (alone and departs(a.maneuver, its.departs))]
 
     @cached_property
     def possible(self) -> list[Contact]:

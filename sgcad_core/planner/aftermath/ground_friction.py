@@ -129,7 +129,9 @@ def _steered(bend: float, speed: float, across_mps2: float) -> float:
 
 
 def locked_turning(one: Body, drag: Drag) -> float:
-    """Angular deceleration of a body on locked wheels, rad/s2."""
+    """Angular deceleration of a body on locked wheels, rad/s2; 0 of a fixed body."""
+    if one.inverse_mass == 0.0:
+        return 0.0
     return one.inverse_inertia / one.inverse_mass * _SLIP_LEVER * 2 * one.radius * drag.across
 
 

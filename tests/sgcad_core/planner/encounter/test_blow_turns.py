@@ -58,3 +58,16 @@ def test_of_several_frictions_that_is_taken_which_turns_the_vehicle_most_as_told
     off, best = misturned(found, IMPACTS)
     assert off == min(each.values()) == each[best]
     assert off < max(each.values())
+
+
+def test_a_rotation_about_a_thing_that_stays_is_forecast_too() -> None:
+    actors = (
+        Actor(id="V1", kind="car", road="W", direction="forward", exit_road="E", maneuver="straight", speed_mph=35),
+        Actor(id="O1", kind="object", road="W", direction="forward", maneuver="stopped", length_m=0.5, width_m=5.0),
+    )
+    contact = Contact(striker="V1", struck="O1", striker_area="front", struck_area="front")
+    told = {"V1": CourseTold(spin="clockwise", spin_deg=90.0)}
+    lines = {a.id: course_of(network("four_leg"), a, 3.0) for a in actors}
+    found = Conflicts(BehaviorSpec(actors=actors, contacts=(contact,)), lines, told=told).of(contact)
+    assert found is not None
+    assert misturned(found, IMPACTS)[1] in IMPACTS
