@@ -34,6 +34,8 @@ OFF_M = 0.0
 """Off the road from here on: the center is beyond the edge."""
 _NEAR_SHARE, _NEAR_M = 0.3, 1.0
 """A distance is right within this share of it, or so many metres."""
+_TURN_SHARE, _TURN_RAD = 0.25, math.radians(30.0)
+"""A rotation is right within this share of it, or this angle."""
 _JUNCTION_M = 1.5
 """Distance out of the area of a junction at which a center still counts as in the intersection."""
 _CORNER_M = 45.0
@@ -86,6 +88,11 @@ def rest_errors(
 def near_m(distance_m: float) -> float:
     """By how much a distance may differ from one that is told."""
     return max(_NEAR_SHARE * distance_m, _NEAR_M)
+
+
+def near_turn_rad(turn_rad: float) -> float:
+    """By how much a rotation may differ from one that is told."""
+    return max(_TURN_SHARE * turn_rad, _TURN_RAD)
 
 
 def attitude_of(roll_rad: float) -> Attitude:

@@ -16,6 +16,7 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats, Size, gaps_where_near
 from sgcad_core.planner.actor_plan import facing, is_beside
 from sgcad_core.planner.aftermath.struck_objects import Strike, standing_track
+from sgcad_core.planner.aftermath.wreck_bodies import FALLEN_MPS2
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import TUMBLING_MPS2, Scene, Track
 from sgcad_core.records.specs import Area, size_m
@@ -137,21 +138,23 @@ def _thrown(scene: Scene, strike: Strike, place: _Place) -> Track:
     if strike.thing.firm:
         poses[k:] = poses[k]
     else:
-        _throw(poses, driven, place, turn)
+        slows = TUMBLING_MPS2 if strike.thing.record.exposed or strike.thing.record.walks else FALLEN_MPS2
+        _throw(poses, driven, place, (turn, slows))
     track = standing_track(scene, strike.thing, poses[k])
     track.poses, track.driven, track.hit = poses, poses, k
     return track
 
 
-def _throw(poses: Floats, driven: Floats, place: _Place, turn: float) -> None:
-    """Writes how a thing is thrown aside behind the sample of its contact, and slides to rest."""
-    k, end, grazed = place.sample, len(poses) - 1, is_beside(place.side)
+def _throw(poses: Floats, driven: Floats, place: _Place, how: tuple[float, float]) -> None:
+    """Writes how a thing is thrown aside behind the sample of its contact, and slides to rest; `how`: its heading in
+    the frame of the vehicle, and its deceleration."""
+    k, end, grazed, (turn, slows_mps2) = place.sample, len(poses) - 1, is_beside(place.side), how
     for j in range(1, _ASIDE + 1):
         share = 1.0 if grazed else j / _ASIDE
         base = driven[k] if grazed else driven[min(k + j, end)]
         poses[min(k + j, end)] = _beside(base, place.ahead_m, place.left_m + share * place.outward_m, turn)
     last = min(k + _ASIDE, end)
-    poses[last:] = poses[last] if grazed else poses[last] + _slide(driven, k, place, len(poses) - last)
+    poses[last:] = poses[last] if grazed else poses[last] + _slide(driven, place, len(poses) - last, slows_mps2)
 
 
 def _beside(pose: Floats, ahead_m: float, left_m: float, turn: float) -> Floats:
@@ -168,15 +171,16 @@ def _walked(strike: Strike, pose: Floats, k: int) -> Floats:
     return np.column_stack((back * math.cos(pose[2]), back * math.sin(pose[2]), np.zeros(k)))
 
 
-def _slide(driven: Floats, k: int, place: _Place, count: int) -> Floats:
+def _slide(driven: Floats, place: _Place, count: int, slows_mps2: float) -> Floats:
     """(count, 3) differences to the pose in which it leaves the vehicle, until it has slid to rest."""
+    k = place.sample
     speed = (driven[k, :2] - driven[k - 1, :2]) / STEP_S * _FLIES
     heading = float(driven[k, 2])
     hand = math.copysign(_SIDEWAYS_MPS, place.outward_m)
     speed = speed + hand * np.array([-math.sin(heading), math.cos(heading)])
     mps = math.hypot(*speed)
-    time = np.minimum(np.arange(count) * STEP_S, mps / TUMBLING_MPS2)
-    way = time - TUMBLING_MPS2 * time**2 / (2 * mps)
+    time = np.minimum(np.arange(count) * STEP_S, mps / slows_mps2)
+    way = time - slows_mps2 * time**2 / (2 * mps)
     return np.column_stack((speed[0] * way, speed[1] * way, np.zeros(count)))
 
 

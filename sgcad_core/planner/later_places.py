@@ -33,6 +33,9 @@ _ALONG_RAD = math.radians(50.0)
 """The told side is met at this angle as well, so that the vehicle stands along its road."""
 _ASIDE = (0.0, 0.3, -0.3)
 """Shares of the partner's side by which the vehicle stands beside its middle."""
+_AGAINST, _OTHER_SIDE = 2.5, 1.5
+"""Ranks of a vehicle that waits against the direction of its lane, and of one that waits in it but is met with another
+side than told."""
 _OFF_ROAD_M = 0.3
 
 
@@ -102,10 +105,13 @@ class ToBeStruck:
         exact = out + math.pi - facing(self.sides[1])
         course = self.role.course
         along = float(course.path.poses([place_near(course, partner).station_m])[0, 2])
-        for rank, angle in ((0.0, along), (0.3, along + math.pi)):
+        against = _AGAINST if self.role.actor.maneuver == "stopped" else 0.3
+        for rank, angle in ((0.0, along), (against, along + math.pi)):
             if abs(math.remainder(angle - exact, 2 * math.pi)) < _ALONG_RAD:
                 yield rank, angle
-        yield 0.6, exact
+        yield max(0.6, against if math.cos(exact - along) < 0.0 else 0.0), exact
+        if self.role.actor.maneuver == "stopped":
+            yield _OTHER_SIDE, along
 
     def _extent(self, turned: float) -> float:
         """How far the vehicle reaches from its center, at an angle to its heading."""

@@ -123,8 +123,10 @@ class _Cast:
 
     @property
     def wandering(self) -> list[str]:
-        """Those of which several moves are told."""
-        return [name for name in self.actors if self.told.get(name, CourseTold()).moves]
+        """Those of which several moves are told, or that leave the road and touch nothing."""
+        alone = not (self.possible or self.behavior.near_crash)
+        told = ((a, self.told.get(a.id, CourseTold())) for a in self.behavior.actors)
+        return [a.id for a, its in told if its.moves or (alone and departs(a.maneuver, its.departs))]
 
     @cached_property
     def possible(self) -> list[Contact]:
@@ -222,7 +224,8 @@ class _Cast:
         """Lets a thing that is struck first give way where its vehicle strikes something else after it."""
         track, goes_on = scene.tracks[first.struck], any(first.striker in pair_of(c) for c in self.contacts[1:])
         if track.motion.fixed and goes_on:
-            track.let_pass(stays=is_passed(self.actors[first.struck], first.striker_area))
+            thing = self.actors[first.struck]
+            track.let_pass(glances=is_passed(thing, first.striker_area), stays=thing.firm)
 
     def _look(self, scene: Scene, pair: Iterable[tuple[Option, Motion, float]]) -> None:
         """Notes which stated maneuvers and evasions are not visible before the contact."""

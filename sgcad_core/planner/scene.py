@@ -74,10 +74,11 @@ class Track:
     def __post_init__(self) -> None:
         self.driven = self.poses
 
-    def let_pass(self, *, stays: bool) -> None:
-        """Lets what strikes it go on: off a thing that stays, or past one that gives way."""
-        self.firm = stays
-        if not stays:
+    def let_pass(self, *, glances: bool, stays: bool) -> None:
+        """Lets what strikes it go on: it `glances` off a thing that stays, or along one, or goes past one that gives
+        way."""
+        self.firm = glances
+        if not (glances or stays):
             self.give_way()
 
     def give_way(self) -> None:
@@ -192,8 +193,9 @@ class Scene:
         start = body((0.0, 0.0, 0.0), track.size, mass)
         runs = self.runs.get(track.actor, ())
         return Mover(
-            track.actor, start, track.driven, self.drag(track), runs, gives_way=track.gives_way, firm=track.firm
-        )
+            track.actor, start, track.driven, self.drag(track), runs, gives_way=track.gives_way, firm=track.firm,
+            falls=actor_kind(track.kind).thing,
+        )  # fmt: skip
 
     def drag(self, track: Track) -> Drag:
         """Deceleration of an actor without a chosen run-out."""

@@ -41,11 +41,10 @@ from sgcad_core.kinds import actor_kind
 from sgcad_core.metrics.drivability import STEP_S
 from sgcad_core.metrics.labels.motion_label_match import Path as Way
 from sgcad_core.metrics.labels.observed_crash import Crash
-from sgcad_core.metrics.rest_error import SPINS_RAD, near_m, rest_errors
+from sgcad_core.metrics.rest_error import SPINS_RAD, near_m, near_turn_rad, rest_errors
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.records.course import CourseTold
 
-SPIN_SHARE, SPIN_DEG = 0.25, 30.0
 CRAWLS_MPS2, CRAWLS_S = 1.3, 2.5
 BENDS_DEG = 60.0
 DEAD_MPS, DEAD_S, DEAD_DEG = 5.0, 0.2, 3.0
@@ -155,7 +154,7 @@ def told_parts(one: Ended, told: CourseTold, crash: Crash) -> Iterator[Seen]:
         turned = way * one.turned_deg
         met = turned > math.degrees(SPINS_RAD)
         if told.spin_deg:
-            met &= abs(turned - told.spin_deg) <= max(SPIN_SHARE * told.spin_deg, SPIN_DEG)
+            met &= abs(math.radians(turned - told.spin_deg)) <= near_turn_rad(math.radians(told.spin_deg))
         yield Seen("spin", met, f"{turned:.0f} degrees {told.spin or 'either way'}, told {told.spin_deg or 'none'}")
 
 

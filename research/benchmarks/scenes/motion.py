@@ -4,7 +4,8 @@
 
 Reads trajectories.csv, result.json and report.txt of every case; nothing that a run says about its own motion is
 believed. Vehicles are held to the limits of `sgcad_core.metrics.thresholds` up to their own first touch; a report that
-tells a loss of control excuses slip and yaw, not friction. Depths of overlap are those of boxes, after the first touch.
+tells a loss of control excuses slip and yaw, not friction. Depths of overlap are those of boxes, after the first touch;
+at poles and other narrow things, at which vehicles crush, only what overlaps at rest counts.
 A stated speed (as the rules read it) is reached where the vehicle drives it, to 5 % or 0.5 m/s, at some time up to its
 first touch. `--cases` names every vehicle and pair that is counted.
 """
@@ -26,6 +27,7 @@ from sgcad_core.geometry.plane import Size
 from sgcad_core.kinds import actor_kind
 from sgcad_core.metrics.drivability import deepest_overlap, driving_peaks, first_touches
 from sgcad_core.metrics.thresholds import DRIVING
+from sgcad_core.planner.aftermath.crush import NARROW_M
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.reading import read
 from sgcad_core.units import MPS_PER_MPH
@@ -82,7 +84,8 @@ def count(case: Path, figures: Figures) -> None:
     for motion in motions:
         if actor_kind(kinds[motion.actor]["type"]).wheeled:
             _vehicle(case.name, motion, kinds[motion.actor], (touches, reading.crash, reading.lost_control), figures)
-    _overlaps(case.name, motions, sizes, figures)
+    poles = {name for name, a in kinds.items() if actor_kind(a["type"]).thing and max(sizes[name]) <= NARROW_M}
+    _overlaps(case.name, motions, sizes, poles, figures)
 
 
 def _vehicle(
@@ -117,9 +120,12 @@ def _speed(case: str, motion: Trajectory, until: int | None, told_mps: float, fi
         figures.lines.append(f"{case} {motion.actor}: told {told_mps:.1f} m/s, drives up to {before.max():.1f}")
 
 
-def _overlaps(case: str, motions: tuple[Trajectory, ...], sizes: dict[str, Size], figures: Figures) -> None:
+def _overlaps(
+    case: str, motions: tuple[Trajectory, ...], sizes: dict[str, Size], poles: set[str], figures: Figures
+) -> None:
+    """Vehicles crush at `poles`: there only what overlaps at rest counts."""
     rest, who = deepest_overlap(motions, sizes, at_rest=True)
-    deep, pair = deepest_overlap(motions, sizes)
+    deep, pair = deepest_overlap([m for m in motions if m.actor not in poles], sizes)
     figures.rest += rest > 0
     figures.deep += deep > DEEP_M
     moving = [m.actor for m in motions if m.actor in first_touches(motions, sizes) and m.speed_mps[-1] > STILL_MPS]

@@ -7,7 +7,7 @@ and of the clock only the time that is left. SI units.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +25,10 @@ _STEERS_MPS = 1.0
 """Slower wheels have no steering effect."""
 _TURNS_M = 1.4
 """Mean distance of the tires from the center: what turns at 1 rad/s moves over the ground with so many m/s."""
+
+
+_GOING_SHARE = 0.8
+"""Where fewer of the bodies move, only these are computed any further."""
 
 
 class Drag(NamedTuple):
@@ -98,7 +102,7 @@ def apply_friction(
     if target == spin:
         return
     off = spin - target
-    turning = _turning_mps2(one, drag) * (run.turning if run else 1.0)
+    turning = locked_turning(one, drag) * (run.turning if run else 1.0)
     turning = max(turning, abs(off) / left_s) * step
     one.spin = target if abs(off) <= turning else spin - math.copysign(turning, off)
 
@@ -112,7 +116,7 @@ def _slide(one: Body, drag: Drag, run: RunOut, step: float, left_s: float) -> No
     brake *= max(1.0, speed / (left_s * max(brake, 1e-6)))
     left = 0.0 if brake * step >= speed else 1.0 - brake * step / speed
     one.vx, one.vy = one.vx * left, one.vy * left
-    turning = max(_turning_mps2(one, drag) * run.turning * turns / both, abs(one.spin) / left_s) * step
+    turning = max(locked_turning(one, drag) * run.turning * turns / both, abs(one.spin) / left_s) * step
     one.spin = 0.0 if abs(one.spin) <= turning else one.spin - math.copysign(turning, one.spin)
     if speed > _STEERS_MPS:
         one.spin += run.yaws_radps2 * step
@@ -124,8 +128,10 @@ def _steered(bend: float, speed: float, across_mps2: float) -> float:
     return max(-most, min(most, bend))
 
 
-def _turning_mps2(one: Body, drag: Drag) -> float:
-    """Angular deceleration of a body on locked wheels, rad/s2."""
+def locked_turning(one: Body, drag: Drag) -> float:
+    """Angular deceleration of a body on locked wheels, rad/s2; 0 of a fixed body."""
+    if one.inverse_mass == 0.0:
+        return 0.0
     return one.inverse_inertia / one.inverse_mass * _SLIP_LEVER * 2 * one.radius * drag.across
 
 
@@ -142,28 +148,55 @@ def run_out_paths(
     """
     counts = [len(ways) for ways in runs]
     state = np.repeat([_moving(one.body) for one in released], counts, axis=0).T
-    turns = [_turning_mps2(one.body, drag) for one, drag in zip(released, drags, strict=True)]
+    turns = [locked_turning(one.body, drag) for one, drag in zip(released, drags, strict=True)]
     way, bend, share, rolls, slides, yaws = np.array([run[1:] for ways in runs for run in ways], dtype=float).T
-    wheels = bend, np.repeat(turns, counts) * share, np.repeat([drag.across for drag in drags], counts)
-    at_s, sliding = released[0].at_s, np.flatnonzero(slides)
-    found = np.empty((max(round((end_s - at_s) / step), 1), len(way), 3))
-    for k in range(len(found)):
-        left_s = max(end_s - at_s - k * step, 0.1)
-        before = state[:, sliding]
-        state = _run_on(state, np.where(k * step < rolls, 0.0, way), wheels, left_s, step)
-        if len(sliding):
-            state[:, sliding] = _slide_on(before, way[sliding], wheels[1][sliding], yaws[sliding], (left_s, step))
-        found[k] = state[:3].T
+    wheels = np.array([
+        way, bend, np.repeat(turns, counts) * share, np.repeat([drag.across for drag in drags], counts), rolls, yaws,
+    ])  # fmt: skip
+    lasts_s = end_s - released[0].at_s
+    found = np.empty((max(round(lasts_s / step), 1), len(way), 3))
+    for chosen, onward in ((slides == 0.0, _run_on), (slides != 0.0, _slide_on)):
+        found[:, chosen] = _traced((state[:, chosen], wheels[:, chosen]), onward, len(found), lasts_s, step)
     return np.split(found, np.cumsum(counts)[:-1], axis=1)
+
+
+class _Clock(NamedTuple):
+    """Time since the release, time that is left, and the step, s."""
+
+    since: float
+    left: float
+    step: float
+
+
+def _traced(
+    start: tuple[Floats, Floats], onward: Callable[[Floats, Floats, _Clock], Floats], count: int, lasts_s: float,
+    step: float,
+) -> Floats:  # fmt: skip
+    """(count, n, 3) poses of bodies with (6, n) states and wheels; those that stand are not computed any further."""
+    (state, wheels), moving = start, np.arange(start[0].shape[1])
+    found = np.empty((count, len(moving), 3))
+    for k in range(count):
+        state = onward(state, wheels, _Clock(k * step, max(lasts_s - k * step, 0.1), step))
+        found[k] = found[k - 1] if k else 0.0
+        found[k, moving] = state[:3].T
+        going = state[3:].any(axis=0)
+        if going.sum() < _GOING_SHARE * len(moving):
+            moving, state, wheels = moving[going], state[:, going], wheels[:, going]
+            if not len(moving):
+                found[k + 1 :] = found[k]
+                break
+    return found
 
 
 def _moving(one: Body) -> tuple[float, ...]:
     return one.x, one.y, one.heading, one.vx, one.vy, one.spin
 
 
-def _run_on(state: Floats, way: Floats, wheels: tuple[Floats, ...], left_s: float, step: float) -> Floats:
-    """(6, n) place, heading, velocity, spin a step later; `way`: braking, `wheels`: bend, turning and grip of each."""
-    bend, turning, grip = wheels
+def _run_on(state: Floats, wheels: Floats, clock: _Clock) -> Floats:
+    """(6, n) place, heading, velocity, spin a step later; `wheels`: (6, n) braking, bend, turning, grip, the time for
+    which it rolls on, and the moment of wheels that drag."""
+    (way, bend, turning, grip, rolls, _), step, left_s = wheels, clock.step, clock.left
+    way = np.where(clock.since < rolls, 0.0, way)
     moved = state[:3] + state[3:] * step
     vx, vy, spin = state[3:]
     c, s, speed = np.cos(moved[2]), np.sin(moved[2]), np.hypot(vx, vy)
@@ -186,9 +219,9 @@ def _run_on(state: Floats, way: Floats, wheels: tuple[Floats, ...], left_s: floa
     return np.concatenate((moved, (*slowed, turned)))
 
 
-def _slide_on(state: Floats, way: Floats, turning: Floats, yaws: Floats, times_s: tuple[float, float]) -> Floats:
-    """(6, n) as `_run_on`, of bodies that slide (`_slide`); `times_s`: what is left, and the step."""
-    left_s, step = times_s
+def _slide_on(state: Floats, wheels: Floats, clock: _Clock) -> Floats:
+    """(6, n) as `_run_on`, of bodies that slide (`_slide`)."""
+    (way, _, turning, _, _, yaws), step, left_s = wheels, clock.step, clock.left
     moved = state[:3] + state[3:] * step
     vx, vy, spin = state[3:]
     speed, turns = np.hypot(vx, vy), np.abs(spin) * _TURNS_M

@@ -106,11 +106,13 @@ def _off_middle(strike: Strike, course: CourseTold) -> Strike:
 
 
 def _on_the_way(told: Courses, rolling: frozenset[str]) -> Courses:
-    """The stated courses of vehicles as they come to what they strike: how they face at rest follows from that."""
+    """The stated courses of vehicles as they come to what they strike: how they face at rest follows from that, but for
+    those that come to rest against it."""
     return {
-        name: replace(course, rest=replace(course.rest, facing_deg=None)) if name in rolling else course
+        name: replace(course, rest=replace(course.rest, facing_deg=None))
+        if name in rolling and course.rest.against is None else course
         for name, course in told.items()
-    }
+    }  # fmt: skip
 
 
 class Ending:

@@ -17,7 +17,15 @@ from functools import cached_property, partial
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.metrics.rest_error import FACING_RAD, SIDE_RAD, SPINS_RAD, RestErrors, near_m, rest_errors
+from sgcad_core.metrics.rest_error import (
+    FACING_RAD,
+    SIDE_RAD,
+    SPINS_RAD,
+    RestErrors,
+    near_m,
+    near_turn_rad,
+    rest_errors,
+)
 from sgcad_core.planner.aftermath.ground_friction import Released, run_out_paths
 from sgcad_core.planner.aftermath.rest_candidates import (
     BlowWays,
@@ -40,7 +48,7 @@ Impact = tuple[float, float]
 IMPACTS: Sequence[Impact] = ((0.5, 0.1), (0.1, 0.1), (0.3, 0.0), (0.6, 0.3))
 """Friction and restitution to try, within what Brach finds for vehicles: little of both for a graze, more friction
 where they lock."""
-_BLOW_S = 0.3
+_BLOW_S = 0.2
 """Duration of the impact; then the bodies have parted or slide together, and drivers and wheels count."""
 _COARSE_S = 0.1
 _PARTED = 100.0
@@ -54,7 +62,8 @@ _WHOLE_AGAIN = 10
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
 """Margin inside the allowed error that counts as best."""
 _FACING_SCALE_RAD = math.radians(45.0)
-"""Error of a facing that counts as much again as missing it."""
+_PLACE_SCALE_M = 5.0
+"""Errors of which half of the cost of an error is reached."""
 _TOLD = 1.0
 _USUAL_SHARE = 0.6
 """Share of the friction: some braking, some dragging wheels."""
@@ -203,19 +212,13 @@ class RestFit:
 
     def _costs(self, name: str, course: CourseTold, ends: Floats) -> Floats:
         """(n,) costs of (n, 3) last poses: 1 and more for every missed part."""
-        errors = self._errors(name, course.rest, ends)
-        total = np.zeros(len(ends))
-        for error, well, scale in zip(
-            errors,
-            (_WELL_RAD, _WELL_M, _WELL_RAD, _WELL_M),
-            (_FACING_SCALE_RAD, 5.0, SIDE_RAD, 5.0),
-            strict=True,
-        ):
-            if error is not None:
-                total += _TOLD * (error > 0) + np.maximum(error + well, 0.0) / scale
+        facing, where, side, lane = self._errors(name, course.rest, ends)
+        total = _missed(len(ends), (facing, _WELL_RAD, _FACING_SCALE_RAD))
+        total += _missed(len(ends), (where, _WELL_M, _PLACE_SCALE_M), (side, _WELL_RAD, SIDE_RAD))
+        total += _missed(len(ends), (lane, _WELL_M, _PLACE_SCALE_M))
         if course.rest.distance_m is not None:
             off = np.abs(self._way_m(name, ends) - course.rest.distance_m)
-            total += _TOLD * (off > near_m(course.rest.distance_m)) + off / course.rest.distance_m
+            total += _TOLD * (off > near_m(course.rest.distance_m)) + _eased(off / course.rest.distance_m)
         return total + self._unspun(name, course, ends) if course.spin else total
 
     def _way_m(self, name: str, ends: Floats) -> Floats:
@@ -225,12 +228,14 @@ class RestFit:
 
     def _unspun(self, name: str, course: CourseTold, ends: Floats) -> Floats:
         """(n,) costs of rotation otherwise than stated: by other degrees, or in the other sense."""
-        turned = ends[:, 2] - self._came_rad(name)
         way = 1.0 if course.spin == "counterclockwise" else -1.0
+        turned = way * (ends[:, 2] - self._came_rad(name))
         wanted = math.radians(course.spin_deg) if course.spin_deg else 2 * _SPIN_RAD
-        off = np.minimum(np.abs(way * turned - wanted) / (2 * wanted), 1.5)
-        told: Floats = off * (1.0 if course.spin_deg and course.rest.facing_deg is None else way * turned < wanted)
-        return told + _TOLD * (way * turned < SPINS_RAD)
+        off, wrong = np.maximum(wanted - turned, 0.0), turned < SPINS_RAD
+        if course.spin_deg:
+            off = np.abs(wanted - turned)
+            wrong |= off > near_turn_rad(wanted)
+        return _TOLD * wrong + _eased(off / (2 * wanted))
 
     def _errors(self, name: str, rest: RestTold, ends: Floats) -> RestErrors:
         """Errors of (n, 3) last poses of a vehicle."""
@@ -257,6 +262,23 @@ class RestFit:
             way = float(self._way_m(name, self.scene.tracks[name].poses[-1:])[0])
             if abs(way - rest.distance_m) > near_m(rest.distance_m):
                 yield f"{name} comes to rest {way:.0f} m from the contact (told: {rest.distance_m:.0f} m)"
+
+
+def _missed(count: int, *errors: tuple[Floats | None, float, float]) -> Floats:
+    """(count,) costs of one stated part: 1 where any of its errors is above 0, and the errors themselves. Each comes
+    with the margin that counts as best, and its scale."""
+    cost, wrong = np.zeros(count), np.zeros(count, bool)
+    for error, well, scale in errors:
+        if error is not None:
+            wrong |= error > 0
+            cost += _eased(np.maximum(error + well, 0.0) / scale)
+    return _TOLD * wrong + cost / len(errors)
+
+
+def _eased(error: Floats) -> Floats:
+    """Errors as costs below 1, so that no near miss of one part outweighs that another part is met."""
+    eased: Floats = error / (1.0 + error)
+    return eased
 
 
 def _in_words(rest: RestTold, errors: RestErrors) -> Iterator[str]:

@@ -132,11 +132,11 @@ def standing_track(scene: Scene, thing: Actor, pose: Floats, *, fixed: bool = Fa
 
 
 def _stand(scene: Scene, strike: Strike, pose: Floats) -> Track:
-    track = standing_track(scene, strike.thing, pose, fixed=not strike.goes_on)
+    stays = strike.thing.firm or not strike.goes_on
+    track = standing_track(scene, strike.thing, pose, fixed=stays)
     scene.tracks[strike.thing.id] = track
-    if strike.glances:
-        track.motion, track.firm = replace(track.motion, fixed=True), True
-    elif strike.goes_on:
+    track.firm = strike.glances
+    if not stays:
         track.give_way()
     return track
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.aftermath.blow import Blow, blow, lacking, part
+from sgcad_core.planner.aftermath.crush import STEP_LONGEST_S, Crushes
 from sgcad_core.planner.aftermath.ground_friction import apply_friction
 from sgcad_core.planner.aftermath.hitch import Hitch, draw_together, equalize_velocities
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, slow_parting
@@ -24,6 +25,7 @@ from sgcad_core.planner.aftermath.wreck_bodies import (
     center_of,
     fastest_closing,
     first_sample,
+    give_way,
     glances,
     key_of,
     last_move,
@@ -34,7 +36,6 @@ from sgcad_core.planner.aftermath.wreck_bodies import (
     set_on_script,
     shift,
     state_of,
-    throw_aside,
     touch_points,
 )
 from sgcad_core.planner.motion import STEP_S
@@ -57,13 +58,11 @@ _HELD_S = 0.11
 _GIVES_S = 0.1
 """Time for which a thing that gives way is pushed along."""
 _TOLD_S, _TOLD_HELD_S = 0.2, 0.25
-"""Time for which the bodies of a stated touch hold, and for which the touch is kept: from a standstill the next vertex
-of a file is only 0.11 m further."""
+"""Time for which the bodies of a stated touch hold, and for which the touch is kept: vertices lie 0.11 m apart."""
 _DEEPEST_M = 0.03
 """Deeper overlaps are parted at once."""
 _ROUNDS, _ROUNDS_OF_MANY = 6, 60
-"""Rounds of impulses over all touching pairs in one step: a body between two that are much heavier gives way to both
-only after many; after six a man between two trucks overlapped one of them by 0.17 m."""
+"""Rounds of impulses over all touching pairs in one step: a body between two that are much heavier needs many."""
 _FASTER_MPS = 4.0
 """Gain in speed within a sample for which the room of `may_meet` (0.5 m) suffices."""
 
@@ -89,6 +88,7 @@ class Wreck:
     """Pairs of which one gave way to the other."""
     blows: dict[tuple[str, str], Blow] = field(default_factory=dict)
     """What pairs that hold each other lack of the velocities with which they part."""
+    crushes: Crushes = field(default_factory=Crushes)
     now: float = 0.0
 
     def __post_init__(self) -> None:
@@ -96,10 +96,8 @@ class Wreck:
         self._movable = [m for m in self.movers if not m.fixed]
 
     def settle(self, until: int | None = None) -> tuple[dict[str, Floats], list[Touch]]:
-        """(count, 3) poses by name, and the touches in the order in which they happen.
-
-        `until`: stop there; the bodies are then as they are at that sample, the poses behind it are the scripts'.
-        """
+        """(count, 3) poses by name, and the touches in the order in which they happen. `until`: stop there; the bodies
+        are then as they are at that sample, the poses behind it are the scripts'."""
         pairs = pairs_apart(self.movers)
         start = first_sample(pairs, self.count)
         poses = {m.name: m.script.copy() for m in self.movers}
@@ -135,15 +133,14 @@ class Wreck:
             step = min(self._step(near, seen or separations(near)), end - self.now)
             self._advance(step)
             self.now += step
-            seen = self._resolve(near, k)
+            seen = self._resolve(near, k, step)
             if any(m.body.speed > most for m, most in zip(self._movable, fastest, strict=True)):
                 near, fastest = self._near(pairs)
                 seen = None
         self._show(near, k)
 
     def _near(self, pairs: Sequence[Pair]) -> tuple[list[Pair], list[float]]:
-        """Pairs that can meet within a sample, and the speeds of the movable bodies up to which this holds: a light
-        body gets faster than both when a heavy one strikes it, and may reach what was out of reach."""
+        """Pairs that can meet within a sample, and the speeds of the movable bodies up to which this holds."""
         left = [pair for pair in pairs if key_of(*pair) not in self.gone] if self.gone else pairs
         return [pair for pair in left if may_meet(*pair)], [m.body.speed + _FASTER_MPS for m in self._movable]
 
@@ -153,7 +150,7 @@ class Wreck:
             a, b = (self.named[name] for name in key)
             if a.gives_way != b.gives_way and key not in self.gone and self.now - since >= _GIVES_S:
                 thing, by = (a, b) if a.gives_way else (b, a)
-                throw_aside(thing.body, by.body)
+                give_way(thing, by.body, self.now)
                 self.gone.add(key)
 
     def _show(self, near: Sequence[Pair], sample: int) -> None:
@@ -170,7 +167,9 @@ class Wreck:
             if gap < _NEAR_M and longest > _LONGEST_S:
                 longest = _LONGEST_S
             closing = fastest_closing(a.body, b.body, normal)
-            if closing > 0:
+            if self.crushes.last(a, b, self.now):
+                longest = min(longest, STEP_LONGEST_S)
+            elif closing > 0:
                 room = gap + 1.2 * SEEN_M if key_of(a, b) not in self.touches else max(gap, 0.0) + 0.3 * SEEN_M
                 longest = min(longest, max(room / closing, _SHORTEST_S))
         return longest
@@ -185,10 +184,11 @@ class Wreck:
             if m.free:
                 apply_friction(one, m.drag, step, left, m.run_at(self.now), self.now)
 
-    def _resolve(self, near: Sequence[Pair], sample: int) -> Sequence[Separation] | None:
+    def _resolve(self, near: Sequence[Pair], sample: int, step: float) -> Sequence[Separation] | None:
         """Applies all touches at one time. Returns the separation of each pair; None where bodies were moved."""
         self._let_part(sample)
         gaps = separations(near)
+        self.crushes.squeeze(near, self.now, step)
         touching = [(a, b, seen) for (a, b), seen in zip(near, gaps, strict=True) if self._touches(a, b, seen, sample)]
         if not touching and not self.hitches:
             return gaps
@@ -241,7 +241,7 @@ class Wreck:
         if key in self.touches and seen.gap_m > _PARTED_M and frozenset(key) in self.again:
             self.past.append((self.touches.pop(key), key))
         if key in self.touches:
-            return seen.gap_m < APART_M
+            return seen.gap_m < APART_M and not self.crushes.last(a, b, self.now)
         if seen.gap_m > 0:
             return False
         coming = approach(a.body, b.body, center_of(touch_points(a.body, b.body)), seen.normal) > 0
@@ -251,7 +251,7 @@ class Wreck:
         for m in (a, b):
             self._release(m, sample)
         self.gone |= {key} if glances(a, b) else set()
-        return key not in self.gone
+        return key not in self.gone and not self.crushes.begins(a, b, seen, self.now)
 
     def _release(self, m: Mover, sample: int) -> None:
         """Frees a body and what is coupled to it."""
@@ -285,7 +285,7 @@ class Wreck:
     def _held_s(self, a: Mover, b: Mover, sample: int) -> float:
         """Time for which two touching bodies still hold; 0 or less where they may part."""
         since = self.touches[key_of(a, b)]
-        if frozenset((a.name, b.name)) in self.told:
+        if frozenset((a.name, b.name)) in self.told and key_of(a, b) not in self.crushes.pulses:
             return since + _TOLD_S - self.now
         return (sample + 1) * STEP_S - self.now if since > sample * STEP_S else 0.0
 

@@ -6,22 +6,28 @@ A rough forecast that orders encounters, before any is simulated whole. Knows en
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from sgcad_core.kinds import mass_kg
 from sgcad_core.metrics.rest_error import compass_rad
+from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.actor_plan import Role
 from sgcad_core.planner.aftermath.blow import blow
+from sgcad_core.planner.aftermath.ground_friction import Drag, locked_turning
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, body
+from sgcad_core.planner.aftermath.rest_fit import Impact
 from sgcad_core.planner.aftermath.wreck_bodies import center_of, separation, touch_points
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.motion import STEP_S, Motion
 
 _SLOWS_MPS2 = 3.0
 """Of a body that slides to rest, some wheels locked."""
-_KEEPS = 0.6
-"""Share of the rotation of the blow, over the time of the slide, that the ground leaves."""
+_ROLLING_SHARE = 0.4
+"""Resistance of rolling wheels to rotation, as a share of that of locked ones."""
 _STEERS_RADPS2 = 0.4
 """Angular acceleration that dragging wheels add in either sense, over that time."""
+_UNUSUAL = 0.2
+"""Weight of a rotation that some run-out gives, but not the usual one."""
 _SOME_RAD = math.radians(45.0)
 """Rotation of a vehicle of which only the sense is told."""
 
@@ -36,14 +42,22 @@ def _tells(role: Role) -> bool:
     return not role.actor.record.thing and (told.spin is not None or told.rest.facing_deg is not None)
 
 
-def misturned(found: Encounter) -> float:
-    """Radians by which the vehicles would turn otherwise than told, both together; 0 where no rotation is told."""
+def misturned(found: Encounter, impacts: Sequence[Impact] = ((FRICTION, RESTITUTION),)) -> tuple[float, Impact]:
+    """Radians by which the vehicles would turn otherwise than told, both together, with the best of some frictions and
+    restitutions, the first of equal ones; 0 where no rotation is told."""
     roles = found.first.role, found.second.role
     wanted = [_wanted(role, motion, own) for role, motion, own in zip(roles, *_clocks(found), strict=True)]
     first, second = (_moving(role, motion, own) for role, motion, own in zip(roles, *_clocks(found), strict=True))
     touch = center_of(touch_points(first, second)), separation(first, second).normal
-    after = blow((first, second), touch, RESTITUTION, FRICTION)
-    return sum(_off(turn, after[k]) for k, turn in enumerate(wanted) if turn is not None)
+    grip = Drag(0.0, DRIVING.sliding_mps2(roles[0].surface))
+    locked = [locked_turning(one, grip) for one in (first, second)]
+
+    def off(impact: Impact) -> float:
+        after = blow((first, second), touch, impact[1], impact[0])
+        return sum(_off(turn, after[k], locked[k]) for k, turn in enumerate(wanted) if turn is not None)
+
+    best = min(impacts, key=off)
+    return off(best), best
 
 
 def _clocks(found: Encounter) -> tuple[tuple[Motion, Motion], tuple[float, float]]:
@@ -75,8 +89,14 @@ def _moving(role: Role, motion: Motion, own_s: float) -> Body:
     return found
 
 
-def _off(wanted: float, after: tuple[float, float, float]) -> float:
-    """What is missing of a rotation after a blow, beyond what wheels that drag add."""
+def _off(wanted: float, after: tuple[float, float, float], locked_radps2: float) -> float:
+    """What is missing of a rotation after a blow, beyond what wheels that roll and wheels that drag allow.
+
+    `locked_radps2`: what four locked wheels take of the rotation.
+    """
     lasts_s = math.hypot(*after[:2]) / _SLOWS_MPS2
-    turned = _KEEPS * after[2] * max(lasts_s, 0.3)
-    return max(abs(wanted - turned) - _STEERS_RADPS2 * lasts_s**2, 0.0)
+    locked = after[2] * abs(after[2]) / (2 * max(locked_radps2, 1e-6))
+    least, most = sorted((locked, locked / _ROLLING_SHARE))
+    steered = _STEERS_RADPS2 * lasts_s**2
+    missing = max(wanted - most - steered, least - steered - wanted, 0.0)
+    return missing + _UNUSUAL * abs(wanted - (least + most) / 2)

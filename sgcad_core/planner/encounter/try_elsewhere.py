@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import chain, islice, zip_longest
+from operator import itemgetter
 from typing import NamedTuple
 
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact
@@ -59,25 +60,31 @@ def least_missed(found: Encounter | None, unfold: Unfold) -> WholeCourse:
     found, *beside = beside_middle(found) or [found]
     best = unfold(found, IMPACTS)
     again = bool(best.scene.again)
-    for other in islice(chain(beside, _like(found, again)), _MOST_AGAIN if again else _MOST):
+    usual = (best.scene.friction, best.scene.restitution)
+    others = chain(((other, usual) for other in beside), _like(found, usual, again=again))
+    for other, impact in islice(others, _MOST_AGAIN if again else _MOST):
         if best.missed < _TOLD_PART:
             break
-        done = unfold(other, IMPACTS if again else [(best.scene.friction, best.scene.restitution)])
+        done = unfold(other, IMPACTS if again else [impact])
         if done.missed < best.missed - _BETTER:
             best = done
     return best
 
 
-def _like(found: Encounter, again: bool) -> Iterator[Encounter]:
-    """Other places along the stated sides, at the given speeds and at others in turn, those first that turn the
-    vehicles as told; for a second contact (`again`) at the given speeds first."""
+def _like(found: Encounter, usual: Impact, *, again: bool) -> Iterator[tuple[Encounter, Impact]]:
+    """Other places along the stated sides, at the given speeds and at others in turn, each with a friction and a
+    restitution (`usual` first), those first that turn the vehicles as told; for a second contact (`again`) at the given
+    speeds first."""
     at_speeds = [_along(found, speeds) for speeds in (*_SPEEDS, *(_SPEEDS_AGAIN if again else ()))]
     if again:
-        yield from at_speeds.pop(0)
+        yield from ((other, usual) for other in at_speeds.pop(0))
     others = (other for row in zip_longest(*at_speeds) for other in row if other)
-    yield from (
-        sorted(islice(others, _RANKED_AGAIN if again else _RANKED), key=misturned) if turns_told(found) else others
-    )
+    if not turns_told(found):
+        yield from ((other, usual) for other in others)
+        return
+    impacts = tuple(dict.fromkeys((usual, *IMPACTS)))
+    ranked = [(*misturned(other, impacts), other) for other in islice(others, _RANKED_AGAIN if again else _RANKED)]
+    yield from ((other, impact) for _, impact, other in sorted(ranked, key=itemgetter(0)))
 
 
 def _along(found: Encounter, factors: tuple[float, float]) -> Iterator[Encounter]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import combinations
 
 import numpy as np
@@ -82,3 +83,22 @@ def test_a_thing_is_struck_so_fast_that_a_file_shows_it() -> None:
     gaps = box_gaps(track.pose, (4.7, 1.8), post.pose, (0.4, 0.4))
     hit = int(np.flatnonzero(gaps <= 0)[0])
     assert np.hypot(*(track.pose[hit - 1, :2] - track.pose[hit - 2, :2])) > 0.11
+
+
+@pytest.mark.parametrize("firm", [True, False])
+def test_a_firm_thing_stays_and_another_one_falls_where_its_vehicle_goes_on(firm: bool) -> None:
+    things = (thing(1).model_copy(update={"firm": firm, "width_m": 3.0}), thing(2))
+    made = plan(crash(*things), network("four_leg"))
+    moved = next(math.dist(t.pose[0, :2], t.pose[-1, :2]) for t in made.trajectories if t.actor == "O1")
+    assert moved == 0.0 if firm else 0.1 < moved < 8.0
+
+
+@pytest.mark.parametrize("firm", [True, False])
+def test_a_wall_that_is_struck_first_stays_where_it_stands(firm: bool) -> None:
+    wall = Actor(id="O1", kind="object", road="W", direction="forward", maneuver="stopped", length_m=0.5, width_m=5.0,
+                 firm=firm)  # fmt: skip
+    car = Actor(id="V1", kind="car", road="W", direction="forward", exit_road="E", maneuver="straight", speed_mph=30)
+    met = [Contact(striker="V1", struck=x, striker_area="front", struck_area="front") for x in ("O1", "O2")]
+    made = plan(BehaviorSpec(actors=(car, wall, thing(2)), contacts=tuple(met)), network("four_leg"))
+    moved = next(math.dist(t.pose[0, :2], t.pose[-1, :2]) for t in made.trajectories if t.actor == "O1")
+    assert (moved == 0.0) is firm

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sgcad_core.planner.aftermath.rest_fit import IMPACTS
 from sgcad_core.planner.encounter.blow_turns import misturned, turns_told
 from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.encounter_search import along_sides
@@ -48,4 +49,25 @@ def test_only_a_told_rotation_or_facing_is_looked_for() -> None:
     assert not turns_told(places(CourseTold())[0])
     assert turns_told(places(CourseTold(spin="clockwise"))[0])
     assert turns_told(places(CourseTold(rest=RestTold(facing_deg=90.0)))[0])
-    assert misturned(places(CourseTold())[0]) == 0.0
+    assert misturned(places(CourseTold())[0])[0] == 0.0
+
+
+def test_of_several_frictions_that_is_taken_which_turns_the_vehicle_most_as_told() -> None:
+    found = places(CourseTold(spin="clockwise", spin_deg=300.0))[0]
+    each = {impact: misturned(found, [impact])[0] for impact in IMPACTS}
+    off, best = misturned(found, IMPACTS)
+    assert off == min(each.values()) == each[best]
+    assert off < max(each.values())
+
+
+def test_a_rotation_about_a_thing_that_stays_is_forecast_too() -> None:
+    actors = (
+        Actor(id="V1", kind="car", road="W", direction="forward", exit_road="E", maneuver="straight", speed_mph=35),
+        Actor(id="O1", kind="object", road="W", direction="forward", maneuver="stopped", length_m=0.5, width_m=5.0),
+    )
+    contact = Contact(striker="V1", struck="O1", striker_area="front", struck_area="front")
+    told = {"V1": CourseTold(spin="clockwise", spin_deg=90.0)}
+    lines = {a.id: course_of(network("four_leg"), a, 3.0) for a in actors}
+    found = Conflicts(BehaviorSpec(actors=actors, contacts=(contact,)), lines, told=told).of(contact)
+    assert found is not None
+    assert misturned(found, IMPACTS)[1] in IMPACTS
