@@ -24,6 +24,11 @@ TOLERANCE_DEG = 35.0
 """Between a road as drawn and the compass direction that the report names, as the validator `road_narrative` has it."""
 LIMIT_MPH = 3.0
 CURVED_RAD = math.radians(10.0)
+_TOLD_BY = {
+    "legs": "junction.kind", "roundabout": "junction.kind", "control": "junction.control",
+    "limit": ".speed_limit_mph", "one_way": ".one_way", "lanes": ".lanes_total",
+}  # fmt: skip
+"""Ends of the names of the facts that tell what is held against a map."""
 _WAYS: dict[str, Compass] = {
     "northbound": "N", "southbound": "S", "eastbound": "E", "westbound": "W", "northeastbound": "NE",
     "southeastbound": "SE", "northwestbound": "NW", "southwestbound": "SW",
@@ -51,9 +56,24 @@ def place_items(made: ExecutedCase) -> Iterator[Item]:
         yield made.item(False, "junction.place", kind, why=unsupported_kind(kind).remedy, text=f"the place: {called}")
 
 
+def map_items(made: ExecutedCase) -> Iterator[Item]:
+    """One item per told fact that the map of the real place can be held against: as there, or contradicted by it."""
+    place = made.network.place
+    for fact in place.facts if place and place.found else ():
+        where = next((f for f in made.reading.facts if is_stated(f) and f.field.endswith(_TOLD_BY[fact.field])), None)
+        yield Item(
+            kind="has" if fact.agrees else "contradicts", field=f"place.on_map.{fact.field}", subject=fact.subject,
+            value=fact.told, seen=None if fact.agrees else fact.on_map, text=fact.text,
+            reason="" if fact.agrees else "the scenario has it as the report tells",
+            start=where.start if where else None, end=where.end if where else None,
+        )  # fmt: skip
+
+
 # ------------------------------------------------------------------ roads
 def _road(made: ExecutedCase, road: RoadFact, name: str, value: Value) -> Comparison | None:
+    mapped = made.network.place.roads_along(road.axis) if made.network.place and road.axis else frozenset[str]()
     here = [d for d in made.drawn if road.axis is None or d.along(road.axis, TOLERANCE_DEG, either=True)]
+    here = [d for d in made.drawn if d.id in mapped] or here
     if name == "axis":
         return Comparison(bool(here), ", ".join(d.id for d in made.drawn), "no road runs that way")
     if name in ("lanes_total", "lanes_each_way"):
