@@ -16,7 +16,7 @@ from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
 from sgcad_core.records.facts import Value
 from sgcad_core.records.specs import Compass
 from sgcad_core.roads.closures import tapers
-from sgcad_core.roads.compiled_facts import CompiledRoad, headings_agree, junctions
+from sgcad_core.roads.compiled_facts import CompiledRoad, headings_agree, junctions, junctions_as_told
 from sgcad_core.roads.lane_graph import network_figures
 from sgcad_core.roads.lane_total_readings import allowed_totals
 
@@ -71,9 +71,7 @@ def map_items(made: ExecutedCase) -> Iterator[Item]:
 
 # ------------------------------------------------------------------ roads
 def _road(made: ExecutedCase, road: RoadFact, name: str, value: Value) -> Comparison | None:
-    mapped = made.network.place.roads_along(road.axis) if made.network.place and road.axis else frozenset[str]()
     here = [d for d in made.drawn if road.axis is None or d.along(road.axis, TOLERANCE_DEG, either=True)]
-    here = [d for d in made.drawn if d.id in mapped] or here
     if name == "axis":
         return Comparison(bool(here), ", ".join(d.id for d in made.drawn), "no road runs that way")
     if name in ("lanes_total", "lanes_each_way"):
@@ -166,7 +164,7 @@ def _control(made: ExecutedCase, value: Value) -> Comparison | None:
 def _stem(made: ExecutedCase, value: Value) -> Comparison | None:
     if value not in COMPASS:
         return None
-    legs = [leg for found in junctions(made.graph) if len(found) > 2 for leg in found]
+    legs = [leg for found in junctions_as_told(made.graph, made.network.place) if len(found) > 2 for leg in found]
     fits = any(headings_agree(angle_of(value), leg, TOLERANCE_DEG + 15) for leg in legs)
     seen = ", ".join(sorted({compass_of_angle(leg) for leg in legs}))
     return Comparison(fits, seen, f"legs lie {seen or 'nowhere'}")

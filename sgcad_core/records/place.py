@@ -11,16 +11,6 @@ from typing import Literal
 from sgcad_core.record_base import Record
 from sgcad_core.records.specs import Compass, Median, Turn
 
-_OPPOSITE: dict[Compass, Compass] = {
-    "N": "S",
-    "NE": "SW",
-    "E": "W",
-    "SE": "NW",
-    "S": "N",
-    "SW": "NE",
-    "W": "E",
-    "NW": "SE",
-}
 LegControl = Literal["none", "signal", "flashing", "stop", "yield"]
 
 
@@ -101,14 +91,6 @@ class Place(Record):
     def origin(self) -> tuple[float, float] | None:
         """Latitude and longitude of the drawn road's (0, 0); None where no place was found."""
         return (self.place.latitude, self.place.longitude) if self.found and self.place else None
-
-    def roads_along(self, axis: Compass) -> frozenset[str]:
-        """Ids of the drawn roads that are the report's street on an axis (N, NE, E or SE); empty where none was found.
-
-        On the map it may run up to 60 degrees off that axis.
-        """
-        ways = {axis, _OPPOSITE[axis]}
-        return frozenset(one.road for one in self.legs if self.found and one.bearing in ways)
 
     @property
     def sentence(self) -> str:
