@@ -34,7 +34,8 @@ class Plane(NamedTuple):
     @property
     def proj(self) -> str:
         """The plane as a transverse Mercator projection, in PROJ's words."""
-        return f"+proj=tmerc +lat_0={self.latitude:.8g} +lon_0={self.longitude:.8g} {_METRIC}"
+        latitude, longitude = (f"{round(value, 7):.7f}".rstrip("0").rstrip(".") for value in self)
+        return f"+proj=tmerc +lat_0={latitude} +lon_0={longitude} {_METRIC}"
 
     @property
     def _metres_a_degree(self) -> tuple[float, float]:

@@ -26,6 +26,8 @@ _SIGN_M = 50.0
 _PAIR_DEG = 35.0
 """Carriageways of one street leave within this angle."""
 _PAIR_M = 45.0
+_SHARP_RAD = math.radians(60.0)
+"""A street that turns so much where one of its ways ends goes on another way."""
 _MOST_LEGS = 8
 Point = tuple[float, float]
 
@@ -130,19 +132,31 @@ def _outwards(made: StreetMap, cluster: Cluster, way: MapWay, nodes: tuple[int, 
             return ()
         length += math.dist(plane.metres(made.places[found[-1]]), plane.metres(made.places[node]))
         found.append(node)
-        if not rest and (onward := _onward(made, node, way, seen)):
+        if not rest and (onward := _onward(made, found, way, seen, plane)):
             seen.add(onward[0].id)
             rest = onward[1]
     return tuple(found)
 
 
-def _onward(made: StreetMap, node: int, way: MapWay, seen: set[int]) -> tuple[MapWay, list[int]] | None:
-    """The next way of the same street behind a node, and its nodes."""
+def _onward(
+    made: StreetMap, walked: Sequence[int], way: MapWay, seen: set[int], plane: Plane
+) -> tuple[MapWay, list[int]] | None:
+    """The next way of the same street behind the nodes walked, and its nodes: the straightest, no sharp turn."""
+    node, before = walked[-1], _direction(made, plane, walked[-2], walked[-1])
+    found = []
     for other in (made.ways[index] for index in made.at[node]):
         same = other.tags.get("name") == way.tags.get("name") and not other.link and not other.ring
         if same and other.id not in seen and node in (other.nodes[0], other.nodes[-1]):
-            return other, list(other.nodes[1:] if other.nodes[0] == node else other.nodes[-2::-1])
-    return None
+            nodes = list(other.nodes if other.nodes[0] == node else other.nodes[::-1])
+            turn = abs(math.remainder(_direction(made, plane, *nodes[:2]) - before, math.tau))
+            found.append((turn, other.id, other, nodes[1:]))
+    turn, _, other, rest = min(found, default=(math.pi, 0, way, []))
+    return (other, rest) if turn < _SHARP_RAD else None
+
+
+def _direction(made: StreetMap, plane: Plane, start: int, end: int) -> float:
+    (ax, ay), (bx, by) = (plane.metres(made.places[node]) for node in (start, end))
+    return math.atan2(by - ay, bx - ax)
 
 
 def _line(made: StreetMap, plane: Plane, nodes: Iterable[int], start: Point | None = None) -> tuple[Point, ...]:
