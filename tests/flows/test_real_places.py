@@ -50,7 +50,9 @@ def test_what_the_map_has_otherwise_is_told_and_costs_the_verdict(run):
     assert (result["status"], result["account"]["verdict"]) == ("generated", "contradicts")
     assert "the map has it otherwise (control: all_way_stop, on the map signal)" in result["account"]["sentence"]
     told = [line for line in lines([result]) if line.startswith("against the map: control")]
-    assert told == ["against the map: control: all_way_stop, on the map signal (the scenario has it as the report tells)"]
+    assert told == [
+        "against the map: control: all_way_stop, on the map signal (the scenario has it as the report tells)"
+    ]
     item = next(item for item in result["account"]["items"] if item["field"] == "place.on_map.control")
     assert item["start"] == REPORT.index("The intersection is")
 

@@ -7,22 +7,22 @@ tells stands; what it leaves open is the map's. Knows no map file.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from sgcad_core.formats.osm.map_facts import compared, kind_told, lanes_agree, road_of, told_totals
 from sgcad_core.formats.osm.names import StreetName, street_name
-from sgcad_core.kinds import FOUR_LEG, JOINING, T, junction_kind
+from sgcad_core.kinds import JOINING
 from sgcad_core.reading.layout.legs_used import legs_used
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.text.compass import COMPASS, NAMES
 from sgcad_core.records.place import LaidLeg, MapLeg, MapPlace, Place, PlaceFact
 from sgcad_core.records.specs import Compass, Leg, RoadLayout, ToldRoad
-from sgcad_core.roads.lane_total_readings import allowed_totals
 
 NEAR_DEG = 35.0
 """Between a street as told and on the map, as the account and the validator `road_narrative` have it."""
@@ -32,7 +32,6 @@ MOST_SKEW_DEG = 40.0
 _BESIDE_DEG = 75.0
 """A leg that is told beside one of the map that lies this near is that one, and it does not fit."""
 _FAR = 1e6
-_LIMIT_MPH = 3
 
 
 Axes = Mapping[Compass, Sequence[StreetName]]
@@ -71,10 +70,9 @@ def fit_of(facts: RoadFacts, told: RoadLayout, real: MapPlace, axes: Axes | None
     laid = _with_bearings(pairs.by_bearing, kept, {leg.bearing for leg in (*joining, *lacking)})
     ours = {leg.bearing: leg for leg in streets}
     drawn = [_laid(one, ours.get(one.bearing), facts, real) for one in laid]
-    compared = (*_legs_compared(facts, real), *_compared(facts, laid, real))
-    circle = told.circle_lanes or (real.circle_lanes if not _kind_told(facts) else 0)
+    circle = told.circle_lanes or (real.circle_lanes if not kind_told(facts) else 0)
     layout = told.model_copy(update={"legs": (*drawn, *lacking, *joining), "circle_lanes": circle})
-    return Fit("", tuple(laid), compared, layout, _mean_off(pairs.by_bearing))
+    return Fit("", tuple(laid), tuple(compared(facts, laid, real)), layout, _mean_off(pairs.by_bearing))
 
 
 # ------------------------------------------------------------------ a place that was found
@@ -162,17 +160,12 @@ def _legs_kept(facts: RoadFacts, pairs: _Pairs, told: int) -> tuple[list[MapLeg]
     """Further legs of the map, and told legs that it lacks, that are drawn: the number of legs is the told one where it
     is told, and vehicles have the legs that they use."""
     used = legs_used(facts)
-    if not _kind_told(facts):
+    if not kind_told(facts):
         return pairs.further, [leg for leg in pairs.lacking if leg.bearing in used]
     room = max(told - len(pairs.by_bearing) - sum(leg.bearing in used for leg in pairs.lacking), 0)
     kept = pairs.further[:room]
     lacking = sorted(pairs.lacking, key=lambda leg: leg.bearing not in used)
     return kept, lacking[: max(told - len(pairs.by_bearing) - len(kept), 0)]
-
-
-def _kind_told(facts: RoadFacts) -> bool:
-    """Whether the text tells how many roads meet."""
-    return facts.junction.stated and (facts.junction.kind in (T, FOUR_LEG) or junction_kind(facts.junction.kind).round)
 
 
 def _with_bearings(told: Mapping[Compass, MapLeg], further: Iterable[MapLeg], taken: set[Compass]) -> list[LaidLeg]:
@@ -206,7 +199,7 @@ def _mean_off(pairs: Mapping[Compass, MapLeg]) -> float:
 # ------------------------------------------------------------------ what stands
 def _laid(one: LaidLeg, ours: Leg | None, facts: RoadFacts, real: MapPlace) -> Leg:
     """The leg as it is drawn."""
-    leg, road = one.leg, _road(facts, one.bearing)
+    leg, road = one.leg, road_of(facts, one.bearing)
     drawn = ours or Leg(bearing=one.bearing, lanes_in=1, lanes_out=1)
     update: dict[str, Any] = {"skew_deg": round(_skew_deg(one.bearing, leg.heading_deg)), "curve": "none"}
     update |= _lanes(leg, drawn, road, facts)
@@ -223,8 +216,8 @@ def _lanes(leg: MapLeg, drawn: Leg, road: RoadFact | None, facts: RoadFacts) -> 
     """Lanes of the map where the text leaves them open or tells as many; where the map does not count them, the usual
     ones, but only in the directions that it has."""
     counts = (leg.lanes_in, leg.lanes_out)
-    told = _told_totals(road)
-    if told and not _agree(told, leg):
+    told = told_totals(road)
+    if told and not lanes_agree(told, leg):
         return {"lanes_in": drawn.lanes_in, "lanes_out": drawn.lanes_out}
     if not leg.lanes_known:
         usual = (drawn.lanes_in or 1, drawn.lanes_out or 1)
@@ -243,72 +236,3 @@ def _ways_needed(facts: RoadFacts, bearing: Compass) -> tuple[int, int]:
     inward = COMPASS[(COMPASS.index(bearing) + 4) % 8]
     driving = [v for v in facts.crash.vehicles if v.heading_stated and v.maneuver not in ("parked", "backing")]
     return int(any(v.heading == inward for v in driving)), int(any(v.exit_heading == bearing for v in driving))
-
-
-def _road(facts: RoadFacts, bearing: Compass) -> RoadFact | None:
-    return next((road for road in facts.streets if road.axis == axis_of(bearing)), None)
-
-
-def _told_totals(road: RoadFact | None) -> frozenset[int]:
-    """Totals that the told lanes of a street allow, of both directions or of one; empty where none are told."""
-    if road is None:
-        return frozenset()
-    lanes = road.lanes
-    found = set(allowed_totals(road, False)) if lanes.total or lanes.each_way or lanes.toward else set[int]()
-    return frozenset(found)
-
-
-def _agree(told: frozenset[int], leg: MapLeg) -> bool:
-    """Whether the map's lanes are a told number, with or without lanes for turns alone and the center lane."""
-    total = leg.lanes_in + leg.lanes_out
-    turning = sum(turn in ("left", "right", "left_right") for turn in leg.turns_in)
-    return not leg.lanes_known or bool({total, total - turning, total + leg.center_turn_lane} & told)
-
-
-# ------------------------------------------------------------------ told facts against the map
-def _legs_compared(facts: RoadFacts, real: MapPlace) -> Iterator[PlaceFact]:
-    junction = facts.junction
-    if not _kind_told(facts) or len(real.legs) < 3:
-        return
-    record = junction_kind(junction.kind)
-    if record.round or real.circle_lanes:
-        seen = "a roundabout" if real.circle_lanes else f"a junction of {len(real.legs)} legs"
-        yield _fact("roundabout", "junction", record.called, seen, bool(record.round) == bool(real.circle_lanes))
-    if not record.round:
-        yield _fact("legs", "junction", str(record.legs), str(len(real.legs)), record.legs == len(real.legs))
-
-
-def _compared(facts: RoadFacts, laid: Sequence[LaidLeg], real: MapPlace) -> Iterator[PlaceFact]:
-    """Control of the junction; lanes, limit and direction of each told street."""
-    controls = {one.leg.control for one in laid} - {"none"}
-    told = facts.junction.control
-    if "control" in facts.junction.where and controls and len(real.legs) > 2:
-        signed = [one for one in laid if one.leg.lanes_in]
-        every = controls == {"stop"} and all(one.leg.control == "stop" for one in signed)
-        seen = "all_way_stop" if every else sorted(controls)[0]
-        yield _fact("control", "junction", told, seen, told == seen or told in controls)
-    for road in facts.streets:
-        here = [one.leg for one in laid if axis_of(one.bearing) == road.axis]
-        if here:
-            yield from _street_compared(road, here)
-
-
-def _street_compared(road: RoadFact, legs: Sequence[MapLeg]) -> Iterator[PlaceFact]:
-    name = next((leg.street for leg in legs if leg.street), "") or f"the street {NAMES[road.axis or 'N']}"
-    totals, known = _told_totals(road), [leg for leg in legs if leg.lanes_known]
-    if totals and known:
-        seen = " and ".join(dict.fromkeys(f"{leg.lanes_in + leg.lanes_out}" for leg in known))
-        told = " or ".join(map(str, sorted(totals)))
-        yield _fact("lanes", name, told, seen, any(_agree(totals, leg) for leg in known))
-    limits = sorted({leg.limit_mph for leg in legs if leg.limit_mph})
-    if road.speed_limit_mph and limits:
-        near = any(abs(limit - road.speed_limit_mph) <= _LIMIT_MPH for limit in limits)
-        yield _fact("limit", name, f"{road.speed_limit_mph} mph", f"{' and '.join(map(str, limits))} mph", near)
-    if road.lanes.one_way is not None:
-        alone = any(not (leg.lanes_in and leg.lanes_out) for leg in legs)
-        words = {True: "one way", False: "both ways"}
-        yield _fact("one_way", name, words[road.lanes.one_way], words[alone], alone == road.lanes.one_way)
-
-
-def _fact(field: Any, subject: str, told: str, on_map: str, agrees: bool) -> PlaceFact:
-    return PlaceFact(field=field, subject=subject, told=told, on_map=on_map, agrees=agrees)

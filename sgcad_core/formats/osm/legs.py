@@ -16,6 +16,8 @@ from sgcad_core.formats.osm.street_map import MapWay, StreetMap, Tags, names_of
 from sgcad_core.formats.osm.tags import lanes_of, limit_mph, one_way, turns_of
 from sgcad_core.geometry.globe import Plane
 from sgcad_core.records.place import LegControl, MapLeg, MapPlace
+from sgcad_core.records.specs import Median
+from sgcad_core.roads.road_geometry import LANE_M, MEDIAN_M
 
 HEADING_M = 30.0
 """The heading of a leg is that of its first 30 m."""
@@ -205,8 +207,17 @@ def _leg(group: Sequence[Stub], control: LegControl) -> MapLeg:
         lanes_out=min(lanes_out, 8), lanes_known=all(lanes_of(one.way).known for one in group),
         turns_in=turns_of(coming.way, not coming.forward, lanes_in) if lanes_in else (), control=control,
         limit_mph=max(limits, default=None), center_turn_lane=bool(found.both),
-        median="raised" if len(group) > 1 else "none",
+        median=_median(group),
     )  # fmt: skip
+
+
+def _median(group: Sequence[Stub]) -> Median:
+    """Of two carriageways: grass where the room between their lanes is wider than a raised median, 4 m as drawn."""
+    if len(group) < 2:
+        return "none"
+    (ax, ay), (bx, by), (dx, dy) = group[0].line[0], group[1].line[0], group[0].outward
+    between = abs((bx - ax) * dy - (by - ay) * dx) - LANE_M * sum(sum(one.lanes) for one in group) / 2
+    return "grass" if between >= MEDIAN_M["grass"] else "raised"
 
 
 def _along(line: Sequence[Point], way_m: float) -> Point:

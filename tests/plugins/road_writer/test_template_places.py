@@ -56,7 +56,8 @@ def test_sumo_puts_the_hub_where_the_streets_meet(tmp_path: Path) -> None:
     network = write(TEXT)
     file = tmp_path / "road.net.xml"
     file.write_text(network.net_xml or "")
-    code = f"import libsumo as s; s.start(['sumo', '-n', {str(file)!r}]); print(*s.simulation.convertGeo(0, 0)); print(*s.simulation.convertGeo(100, 100))"
+    start = f"from libsumo import simulation, start; start(['sumo', '-n', {str(file)!r}])"
+    code = f"{start}; [print(*simulation.convertGeo(at, at)) for at in (0, 100)]"
     done = subprocess.run(
         [sys.executable, "-c", code], env=settings.subprocess_environment(), capture_output=True, text=True, check=True
     )

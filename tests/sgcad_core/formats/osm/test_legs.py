@@ -90,14 +90,21 @@ def test_a_stop_sign_is_for_those_who_drive_in(tmp_path: Path, direction: str, s
     made = crossing()
     tags = {"direction": direction} if direction else {}
     made.ways[1][0].insert(1, made.node(-15, 0, highway="stop", **tags))
-    assert {leg[0]: leg[3] for leg in told(the_junction(made.written(tmp_path)))} == {0: "none", 90: "none", 180: "none", 270: sign}
+    assert {leg[0]: leg[3] for leg in told(the_junction(made.written(tmp_path)))} == {
+        0: "none",
+        90: "none",
+        180: "none",
+        270: sign,
+    }
 
 
 def test_a_sign_behind_the_next_junction_is_of_that_one(tmp_path: Path) -> None:
     made = crossing()
     made.ways[1][0][0:1] = [made.node(-35, 0, highway="stop"), made.node(-25, 0)]
     made.street("Cedar Lane", [(-25, 0), (-25, 80)])
-    cluster = junctions_of(written := made.written(tmp_path), ways(written, "Alder Street"), ways(written, "Birch Avenue"))
+    cluster = junctions_of(
+        written := made.written(tmp_path), ways(written, "Alder Street"), ways(written, "Birch Avenue")
+    )
     assert {leg.control for leg in junction_place(written, cluster[0], ()).legs} == {"none"}
 
 
@@ -133,7 +140,9 @@ def test_a_junction_is_found_by_coordinates(tmp_path: Path) -> None:
 
 def test_a_point_of_a_street_has_two_legs(tmp_path: Path) -> None:
     made = Sketch()
-    made.street("Alder Street", [(0, 0), polar(30, 400)], lanes="3", lanes__forward="2", lanes__backward="1", maxspeed="40 mph")
+    made.street(
+        "Alder Street", [(0, 0), polar(30, 400)], lanes="3", lanes__forward="2", lanes__backward="1", maxspeed="40 mph"
+    )
     written = made.written(tmp_path)
     near = nearest_point(written, [0], Plane(LAT, LON).spot(*polar(30, 200)))
     assert near

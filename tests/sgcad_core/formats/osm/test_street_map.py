@@ -48,7 +48,12 @@ def test_only_the_names_that_fit_best_count(tmp_path: Path) -> None:
 
 def test_footways_driveways_and_areas_are_no_roads(tmp_path: Path) -> None:
     made = crossing()
-    for tags in ({"highway": "footway"}, {"highway": "service"}, {"highway": "residential", "area": "yes"}, {"building": "yes"}):
+    for tags in (
+        {"highway": "footway"},
+        {"highway": "service"},
+        {"highway": "residential", "area": "yes"},
+        {"building": "yes"},
+    ):
         made.ways.append(([1, 2], tags))
     assert len(made.written(tmp_path).ways) == 2
 

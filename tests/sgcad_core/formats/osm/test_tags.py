@@ -33,7 +33,9 @@ def test_lanes_are_those_of_the_tags(tags: dict[str, str], lanes: tuple[int, int
 
 
 def test_a_roundabout_is_one_way_unless_it_says_otherwise() -> None:
-    assert [one_way(way(**tags)) for tags in ({"junction": "roundabout"}, {"junction": "roundabout", "oneway": "no"}, {})] == [1, 0, 0]
+    assert [
+        one_way(way(**tags)) for tags in ({"junction": "roundabout"}, {"junction": "roundabout", "oneway": "no"}, {})
+    ] == [1, 0, 0]
 
 
 def test_turns_stand_from_the_right_curb() -> None:
