@@ -24,6 +24,7 @@ from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
+from sgcad_core.reading.roads.named_places import named_places
 from sgcad_core.reading.roads.road_facts import RoadFacts
 from sgcad_core.reading.roads.told_roads import told_roads
 from sgcad_core.roads.layout import LEG_M, road_spec
@@ -85,5 +86,6 @@ class Template(RoadWriter):
         """The report's place in the maps; None where no maps are given. Raises ConfigError, MissingTool."""
         if self.places is None:
             return None
-        maps = [read_street_map(extract) for extract in maps_in(self.places)]
+        named = named_places(narrative)
+        maps = [read_street_map(extract) for extract in maps_in(self.places)] if named.some else []
         return real_place(narrative, facts, layout_of_facts(facts, defaults, as_counted=True), maps)

@@ -56,7 +56,7 @@ def real_place(narrative: str, facts: RoadFacts, told: RoadLayout, maps: Sequenc
     if facts.junction.kind in (RAMP, PARKING_LOT):
         return _lost(f"{junction_kind(facts.junction.kind).called} is drawn as told")
     named = named_places(narrative)
-    if not named.streets and named.latitude is None:
+    if not named.some:
         return _lost("the report names no street and no coordinates")
     meets = junction_kind(facts.junction.kind).legs > 2 and facts.junction.kind not in JOINING
     found = [place for made in maps for place in (_junctions if meets else _points)(made, named)]

@@ -49,6 +49,11 @@ class NamedPlaces:
     longitude: float | None = None
     away: Away | None = None
 
+    @property
+    def some(self) -> bool:
+        """Whether it names anything that a map may know."""
+        return bool(self.streets) or self.latitude is not None
+
 
 def named_places(narrative: str) -> NamedPlaces:
     """The named places of a narrative; all empty where it names none."""
