@@ -50,6 +50,10 @@ Jobs = Annotated[
 ]
 Encoding = Annotated[str, typer.Option("--encoding", help="Encoding of the plan in the .xosc: timed or events.")]
 Traffic = Annotated[str, typer.Option("--traffic", help="Traffic around the crash: light, dense or none.")]
+Places = Annotated[
+    str,
+    typer.Option("--places", help="An OpenStreetMap extract or a folder of them, for the streets that reports name."),
+]
 Judge = Annotated[str, typer.Option("--judge", help="A second simulator, such as esmini, whose motion is compared.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Run finished cases again.")]
 Detail = Annotated[
@@ -96,6 +100,7 @@ def run(
     fresh: Fresh = False,
     encoding: Encoding = "",
     traffic: Traffic = "",
+    places: Places = "",
     server: Annotated[
         bool, typer.Option("--server", help="Show the run in Prefect; so it is where PREFECT_API_URL names a server.")
     ] = False,
@@ -105,7 +110,9 @@ def run(
     from flows.batch.tracking import track_rest
     from flows.case_files.find_cases import cases_of
 
-    made = _batch(cases_of(reports), config, [*(overrides or ()), *_options(encoding, traffic)], out, jobs, fresh)
+    made = _batch(
+        cases_of(reports), config, [*(overrides or ()), *_options(encoding, traffic, places)], out, jobs, fresh
+    )
     shown = server or bool(settings.prefect_url())
     run_them = run_batch.evaluate if shown else run_batch.evaluate_alone
     code, _ = _carry_out(made, lambda watch: run_them(made, watch.ended, on_step=watch.step))
@@ -126,6 +133,7 @@ def evaluate(
     judge: Judge = "",
     encoding: Encoding = "",
     traffic: Traffic = "",
+    places: Places = "",
     detail: Detail = "stage",
     workers: Workers = "auto",
     store: Store = "",
@@ -136,15 +144,15 @@ def evaluate(
     from flows.case_files.folder_cases import left_out
 
     judged = [f"judge.name={judge}"] if judge else []
-    named = [*(overrides or ()), *judged, *_options(encoding, traffic)]
+    named = [*(overrides or ()), *judged, *_options(encoding, traffic, places)]
     made = _batch(cases_in(cases), config, named, out, jobs, fresh).shown(detail, workers, store)
     made = dataclasses.replace(made, left=left_out(cases))
     leave(_carry_out(made, lambda watch: run_batch.evaluate(made, watch.ended, on_step=watch.step))[0])
 
 
-def _options(encoding: str, traffic: str) -> list[str]:
+def _options(encoding: str, traffic: str, places: str) -> list[str]:
     """Options as overrides; loading the config reports a wrong value or a plugin without this choice."""
-    told = {"scenario_writer.encoding": encoding, "traffic": traffic}
+    told = {"scenario_writer.encoding": encoding, "traffic": traffic, "road_writer.places": places}
     return [f"{key}={value}" for key, value in told.items() if value]
 
 

@@ -89,6 +89,7 @@ def result_of(record: CaseRecord) -> dict[str, Any]:
         "missing": list(missing),
         "attempts": {s: len(record.outcomes[s].attempts) if s in record.outcomes else 0 for s in STAGES},
         "network": _network(record.network),
+        **_place(record.network),
         "actors": [actor.model_dump() for actor in record.scenario.actors] if record.scenario else [],
         "collision": _collision(record.scenario, record.execution),
         "near_crash": _near_crash(record.scenario, record.execution),
@@ -207,6 +208,13 @@ def _network(network: RoadNetwork | None) -> dict[str, Any] | None:
     }
 
 
+def _place(network: RoadNetwork | None) -> dict[str, Any]:
+    """The real place, or why it is not used; nothing where no maps were given."""
+    if network is None or network.place is None:
+        return {}
+    return {"place": {"sentence": network.place.sentence, **network.place.model_dump(mode="json")}}
+
+
 def _collision(scenario: Scenario | None, execution: Execution | None) -> dict[str, Any]:
     declared = scenario.declared if scenario else None
     observed = execution.contact if execution else None
@@ -281,4 +289,6 @@ def case_notes(record: CaseRecord) -> list[Note]:
         notes += notes_of("finding", [finding.line()], facts, finding.where)
     notes += notes_of("held", [f"{a.stage}: held to {hold.line()}" for a in told for hold in a.held], facts)
     notes += notes_of("judge", record.judgement.lines() if record.judgement else (), facts)
+    place = record.network.place if record.network else None
+    notes += notes_of("place", [place.sentence] if place else (), facts)
     return notes + notes_of("plan", record.scenario.notes if record.scenario else (), facts)

@@ -130,5 +130,6 @@ def starting(program: str) -> Iterator[None]:
 
 
 def subprocess_environment() -> dict[str, str]:
-    """The environment for SUMO's programs."""
-    return {**os.environ, "SUMO_HOME": str(sumo_home())}
+    """The environment for SUMO's programs; networks with a place on the globe need SUMO's table of projections."""
+    home = sumo_home()
+    return {"PROJ_LIB": str(home / "data" / "proj"), **os.environ, "SUMO_HOME": str(home)}

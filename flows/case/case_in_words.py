@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sgcad_core.account import Disagreement
+from sgcad_core.account.records import is_of_map
 from sgcad_core.result import as_declared, counts_of
 
 MAX_LINES = 12
@@ -28,8 +29,9 @@ def lines(results: Sequence[Mapping[str, Any]]) -> list[str]:
         *near,
         *account_lines(result),
         *disagreement_lines(result),
+        *([result["place"]["sentence"]] if result.get("place") else []),
         *traffic_lines(result),
-        *(f"note: {note['text']}" for note in result["notes"][:MAX_LINES]),
+        *(f"note: {note['text']}" for note in [n for n in result["notes"] if n["kind"] != "place"][:MAX_LINES]),
     ]
 
 
@@ -44,6 +46,8 @@ def account_lines(result: Mapping[str, Any]) -> list[str]:
     ]
     found += [f"lacking: {line}" for line in _lines(account, "lacks")[:MAX_LINES]]
     found += [f"{name}: {line}" for name, kind in _BESIDE for line in _lines(account, kind)[:MAX_LINES]]
+    against = [item for item in account["items"] if item["kind"] == "contradicts" and is_of_map(item["field"])]
+    found += [f"against the map: {item['text']} ({item['reason']})" for item in against]
     assumed = _lines(account, "assumed")
     more = f"; and {len(assumed) - MAX_LINES} more" if len(assumed) > MAX_LINES else ""
     return found + ([f"assumed: {'; '.join(assumed[:MAX_LINES])}{more}"] if assumed else [])
@@ -85,6 +89,7 @@ def lacking_in_words(account: Mapping[str, Any], most: int) -> str:
 
 def _lines(account: Mapping[str, Any], kind: str) -> list[str]:
     items = [item for item in account["items"] if item["kind"] == kind]
+    items = [item for item in items if kind != "contradicts" or not is_of_map(item["field"])]
     if kind == "assumed":
         return [item["text"] for item in items]
     return [f"{item['text']} ({item['reason']})" if item["reason"] else item["text"] for item in items]

@@ -25,9 +25,9 @@ from sgcad_core.asking.refine import Turn
 from sgcad_core.case import evidence, records
 from sgcad_core.config import Config
 from sgcad_core.interfaces import Plugin
-from sgcad_core.records import facts, second_reader, specs
+from sgcad_core.records import facts, place, second_reader, specs
 
-_RECORDS = (evidence, facts, findings, second_reader, records, specs, refine, repairs, schema_holds, record_json)
+_RECORDS = (evidence, facts, findings, second_reader, records, specs, place, refine, repairs, schema_holds, record_json)
 """Modules that define the content of kept results; other code in them is another key."""
 
 

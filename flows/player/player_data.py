@@ -152,6 +152,7 @@ class View:
             "disagreements": self.result.get("disagreements", []),
             "redactions": redactions(self.report.places),
             "network": self.result["network"],
+            "place": (self.result.get("place") or {}).get("sentence", ""),
             "drawing": _drawing(self.drawing, road_axes(self.result.get("facts", ()))),
             "signals": {s.edge: s.changes for s in self.signals},
             "drive": self.drive,

@@ -7,19 +7,24 @@ findings cannot change its answer.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated, ClassVar
 
 from pydantic import Field
 
 from plugins.road_writer._told_layout import no_crash
-from sgcad_core.case.records import Context, Finding, Passage, RoadNetwork
+from sgcad_core.case.records import Context, Finding, Passage, Place, RoadNetwork
 from sgcad_core.errors import Refused
+from sgcad_core.formats.osm.fit import known_from, laid_on, posted_on_map, settled
+from sgcad_core.formats.osm.real_place import axes_of, real_place
+from sgcad_core.formats.osm.street_map import maps_in, read_street_map
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.interfaces import Ask, RoadWriter
 from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
+from sgcad_core.reading.roads.named_places import named_places
 from sgcad_core.reading.roads.road_facts import RoadFacts
 from sgcad_core.reading.roads.told_roads import told_roads
 from sgcad_core.roads.layout import LEG_M, road_spec
@@ -40,6 +45,16 @@ class Template(RoadWriter):
     speed_limit_mph: Annotated[int, Field(ge=5, le=85)] = 35
     """Where no limit is posted: the usual one of urban arterials."""
 
+    places: Path | None = None
+    """An OpenStreetMap extract (.osm, .osm.gz, .osm.bz2, .osm.pbf), or a folder of them: where the report names streets
+    or coordinates that they have, the road is the real one."""
+
+    @property
+    def stamp(self) -> str:
+        """Names and sizes of the maps. Raises ConfigError where there are none."""
+        maps = maps_in(self.places) if self.places else ()
+        return "; ".join(f"{extract.name} {extract.stat().st_size}" for extract in maps)
+
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int
     ) -> RoadNetwork:
@@ -55,11 +70,22 @@ class Template(RoadWriter):
             raise no_crash()
         refuse_unsupported(facts.junction.unsupported)
         defaults = Defaults(self.lanes_each_way, self.speed_limit_mph)
-        layout = layout_of_facts(facts, defaults)
+        place = self._place(narrative, facts, defaults)
+        laid = laid_on(place, facts, axes_of(narrative))
+        layout, place = settled(layout_of_facts(facts, defaults, laid=laid), place)
         spec = road_spec(layout, self.leg_length_m)
-        told = told_roads(facts, spec)
-        network = compile_network(plain_xml(spec, told), spec)
-        notes = [f"template: {note}; a default stands in" for note in facts.notes]
+        told = posted_on_map(told_roads(facts, spec), place)
+        network = compile_network(plain_xml(spec, told, place.origin if place else None), spec)
+        notes = [f"template: {note}; a default stands in" for note in facts.notes if not known_from(place, note)]
         if open_limits := [name for name, road in told.items() if not road.posted]:
             notes.append(f"template: no posted speed limit is told of {', '.join(open_limits)}; the map leaves it open")
-        return network.model_copy(update={"layout": layout, "log": "\n".join([*notes, network.log]).strip()})
+        log = "\n".join([*notes, network.log]).strip()
+        return network.model_copy(update={"layout": layout, "place": place, "log": log})
+
+    def _place(self, narrative: str, facts: RoadFacts, defaults: Defaults) -> Place | None:
+        """The report's place in the maps; None where no maps are given. Raises ConfigError, MissingTool."""
+        if self.places is None:
+            return None
+        named = named_places(narrative)
+        maps = [read_street_map(extract) for extract in maps_in(self.places)] if named.some else []
+        return real_place(narrative, facts, layout_of_facts(facts, defaults, as_counted=True), maps)

@@ -62,7 +62,8 @@ class Rules(PlannedWriter):
                 scenario = self._compiled(facts, spec, network, reading)
         if findings:
             scenario = self._mended(scenario, facts, network, reading)
-        widened = lane_notes(reading.roads) if network.source == "written" else ()
+        drawn = network.source == "written" and not (network.place and network.place.found)
+        widened = lane_notes(reading.roads) if drawn else ()
         return scenario.model_copy(update={"notes": (*_inferred(reading.crash), *widened, *said, *scenario.notes)})
 
     def _compiled(self, facts: CrashFacts, spec: RoadSpec, network: RoadNetwork, reading: Reading) -> Scenario:

@@ -25,7 +25,13 @@ from sgcad_core.reading.layout.legs_used import ahead, legs_used, turns_off
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
 from sgcad_core.reading.text.compass import AXIS_NAMES, NAMES, angle_of, compass_of_angle, turned
 from sgcad_core.records.specs import Compass
-from sgcad_core.roads.compiled_facts import CompiledRoad, compiled_roads, headings_agree, junctions
+from sgcad_core.roads.compiled_facts import (
+    CompiledRoad,
+    compiled_roads,
+    headings_agree,
+    junctions_as_told,
+    roads_as_told,
+)
 from sgcad_core.roads.lane_total_readings import allowed_totals, may_show_other_lanes
 
 _finding = FindingFactory("road_narrative")
@@ -41,7 +47,7 @@ class RoadNarrative(Validator):
     """
 
     stage: ClassVar[str] = "road"
-    version: ClassVar[str] = "9"
+    version: ClassVar[str] = "10"
     tolerance_deg: float = 35.0
     """Allowed angle between a drawn road and the compass direction that the report names."""
     limit_tolerance_mph: float = 3.0
@@ -57,7 +63,8 @@ class RoadNarrative(Validator):
         except InvalidOutput:
             return []
         reading, facts = evidence.report.reading, evidence.report.reading.roads
-        drawn, legs, pictured = compiled_roads(graph), junctions(graph), bool(evidence.report.diagrams)
+        drawn, legs = roads_as_told(compiled_roads(graph), artifact.place), junctions_as_told(graph, artifact.place)
+        pictured = bool(evidence.report.diagrams)
         asked = [
             *_no_circle(facts, graph),
             *(asked_control(facts, artifact.spec) if self.every else ()),

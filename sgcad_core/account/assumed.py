@@ -26,12 +26,28 @@ def assumed_items(made: ExecutedCase, facts: Iterable[Fact]) -> Iterator[Item]:
     """One item per field, from its last fact; a junction without a stated control is assumed to have none."""
     last = {fact.field: fact for fact in facts}
     for fact in last.values():
+        if _on_map(fact.field, made):
+            continue
         if fact.value is not None and not _NO_PART.search(fact.field) and (reason := _reason(fact)):
             yield _item(fact, reason, made)
     junction = made.reading.roads.junction
-    if junction.kind not in ("none", "parking_lot") and "junction.control" not in last:
+    place = made.network.place
+    signed = place is not None and place.found and any(one.leg.control != "none" for one in place.legs)
+    if junction.kind not in ("none", "parking_lot") and "junction.control" not in last and not signed:
         fact = Fact(field="junction.control", value="none", basis="default", status="default", rule="", confidence=0.2)
         yield _item(fact, "not told", made)
+
+
+def _on_map(field: str, made: ExecutedCase) -> bool:
+    """Whether the map of the real place tells what the report leaves open."""
+    place = made.network.place
+    if place is None or not place.found or place.place is None:
+        return False
+    if field == "junction.kind":
+        return len(place.place.legs) > 2
+    of, _, name = field.removeprefix("roads.").partition(".")
+    leg = next((one.leg for one in place.legs if one.road == of), None)
+    return leg is not None and (leg.limit_mph is not None if name == "speed_limit_mph" else leg.lanes_known)
 
 
 def _reason(fact: Fact) -> str:

@@ -10,7 +10,7 @@ from sgcad_core.account.contacts import contact_items
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.motion import motion_items
 from sgcad_core.account.notes import Note
-from sgcad_core.account.places import place_items
+from sgcad_core.account.places import map_items, place_items
 from sgcad_core.account.records import Account, Disagreement, Item
 from sgcad_core.account.second_opinion import weighed
 from sgcad_core.account.told_places import told_place_items
@@ -63,6 +63,7 @@ def _told(made: ExecutedCase) -> Iterator[Item]:
     yield from place_items(made)
     yield from unread_items(made)
     yield from told_place_items(made)
+    yield from map_items(made)
 
 
 def _limits(notes: Iterable[Note]) -> Iterator[Item]:

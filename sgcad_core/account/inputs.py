@@ -18,7 +18,7 @@ from sgcad_core.metrics.labels.motion_label_match import Path
 from sgcad_core.metrics.labels.observed_crash import Crash
 from sgcad_core.reading.reading import Reading
 from sgcad_core.records.facts import Fact, Value
-from sgcad_core.roads.compiled_facts import CompiledRoad, compiled_roads
+from sgcad_core.roads.compiled_facts import CompiledRoad, compiled_roads, roads_as_told
 from sgcad_core.roads.lane_graph import LaneGraph
 
 
@@ -40,8 +40,8 @@ class ExecutedCase:
 
     @cached_property
     def drawn(self) -> list[CompiledRoad]:
-        """The roads of the graph with their lanes and headings."""
-        return compiled_roads(self.graph)
+        """The roads of the graph with their lanes and headings; those of a real place as the report knows them."""
+        return roads_as_told(compiled_roads(self.graph), self.network.place)
 
     @cached_property
     def sizes(self) -> Mapping[str, Size]:

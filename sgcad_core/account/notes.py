@@ -1,7 +1,8 @@
 """Notes of a case as records: the remark of a step, its subject, its place in the report. Knows no file.
 
 kind: `reader` (the report's files), `limit` (beyond what is read or driven), `finding` (a validator's remark), `held`
-(what a model's answer was held to), `judge` (a second simulator), `plan` (what writer and planner changed or left out).
+(what a model's answer was held to), `judge` (a second simulator), `place` (the real place), `plan` (what
+writer and planner changed or left out).
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from sgcad_core.reading.inference.reading_limits import BEYOND
 from sgcad_core.record_base import Record
 from sgcad_core.records.facts import Fact
 
-NoteKind = Literal["reader", "limit", "finding", "held", "judge", "plan"]
+NoteKind = Literal["reader", "limit", "finding", "held", "judge", "place", "plan"]
 _ID = re.compile(r"\b[VPBTOA]\d{1,2}\b")
 _WORDS = {
     "rest": "rest.",

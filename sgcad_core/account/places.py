@@ -16,7 +16,7 @@ from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
 from sgcad_core.records.facts import Value
 from sgcad_core.records.specs import Compass
 from sgcad_core.roads.closures import tapers
-from sgcad_core.roads.compiled_facts import CompiledRoad, headings_agree, junctions
+from sgcad_core.roads.compiled_facts import CompiledRoad, headings_agree, junctions, junctions_as_told
 from sgcad_core.roads.lane_graph import network_figures
 from sgcad_core.roads.lane_total_readings import allowed_totals
 
@@ -24,6 +24,11 @@ TOLERANCE_DEG = 35.0
 """Between a road as drawn and the compass direction that the report names, as the validator `road_narrative` has it."""
 LIMIT_MPH = 3.0
 CURVED_RAD = math.radians(10.0)
+_TOLD_BY = {
+    "legs": "junction.kind", "roundabout": "junction.kind", "control": "junction.control",
+    "limit": ".speed_limit_mph", "one_way": ".one_way", "lanes": ".lanes_total",
+}  # fmt: skip
+"""Ends of the names of the facts that tell what is held against a map."""
 _WAYS: dict[str, Compass] = {
     "northbound": "N", "southbound": "S", "eastbound": "E", "westbound": "W", "northeastbound": "NE",
     "southeastbound": "SE", "northwestbound": "NW", "southwestbound": "SW",
@@ -49,6 +54,19 @@ def place_items(made: ExecutedCase) -> Iterator[Item]:
     for kind in made.reading.roads.junction.unsupported:
         called = unsupported_kind(kind).called
         yield made.item(False, "junction.place", kind, why=unsupported_kind(kind).remedy, text=f"the place: {called}")
+
+
+def map_items(made: ExecutedCase) -> Iterator[Item]:
+    """One item per told fact that the map of the real place can be held against: as there, or contradicted by it."""
+    place = made.network.place
+    for fact in place.facts if place and place.found else ():
+        where = next((f for f in made.reading.facts if is_stated(f) and f.field.endswith(_TOLD_BY[fact.field])), None)
+        yield Item(
+            kind="has" if fact.agrees else "contradicts", field=f"place.on_map.{fact.field}", subject=fact.subject,
+            value=fact.told, seen=None if fact.agrees else fact.on_map, text=fact.text,
+            reason="" if fact.agrees else "the scenario has it as the report tells",
+            start=where.start if where else None, end=where.end if where else None,
+        )  # fmt: skip
 
 
 # ------------------------------------------------------------------ roads
@@ -156,7 +174,7 @@ def _control(made: ExecutedCase, value: Value) -> Comparison | None:
 def _stem(made: ExecutedCase, value: Value) -> Comparison | None:
     if value not in COMPASS:
         return None
-    legs = [leg for found in junctions(made.graph) if len(found) > 2 for leg in found]
+    legs = [leg for found in junctions_as_told(made.graph, made.network.place) if len(found) > 2 for leg in found]
     fits = any(headings_agree(angle_of(value), leg, TOLERANCE_DEG + 15) for leg in legs)
     seen = ", ".join(sorted({compass_of_angle(leg) for leg in legs}))
     return Comparison(fits, seen, f"legs lie {seen or 'nowhere'}")

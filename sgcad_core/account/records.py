@@ -10,9 +10,14 @@ from sgcad_core.records.facts import Value
 Kind = Literal["has", "lacks", "assumed", "unread", "contradicts", "guessed"]
 Verdict = Literal["whole", "lacking", "unread", "contradicts", "guessed", "disputed", "none"]
 """The first of these that holds. `lacking`: a stated item is not in the scenario; `unread`: a sentence tells something
-of which nothing was read; `contradicts`: the report says two things of one field; `guessed`: what the crash turns on is
-told nowhere; `disputed`: another reader reads the report otherwise than the one whose answer stands; `whole`: none of
-these, right as far as told; `none`: there is no scenario to compare with."""
+of which nothing was read; `contradicts`: the report says two things of one field, or the map of its place has another;
+`guessed`: what the crash turns on is told nowhere; `disputed`: another reader reads the report otherwise than the one
+whose answer stands; `whole`: none of these, right as far as told; `none`: there is no scenario to compare with."""
+
+
+def is_of_map(field: str) -> bool:
+    """Whether an item is a told fact held against a map (`Item.field`), not against the scenario."""
+    return field.startswith("place.on_map.")
 
 
 class Item(Record):

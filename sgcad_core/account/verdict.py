@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.notes import Note
-from sgcad_core.account.records import Disagreement, Item, Kind, Verdict
+from sgcad_core.account.records import Disagreement, Item, Kind, Verdict, is_of_map
 from sgcad_core.account.words import phrase
 from sgcad_core.kinds import ALLEY, DRIVEWAY, Maneuver
 from sgcad_core.metrics.untold_places import untold_places
@@ -43,10 +43,12 @@ def verdict_of(items: Sequence[Item], differing: Sequence[Disagreement]) -> Verd
 def sentence_of(verdict: Verdict, items: Sequence[Item], differing: Sequence[Disagreement]) -> str:
     """The verdict in one sentence: what lacks, what is unread, where the report contradicts itself, what is guessed."""
     of = {kind: [item for item in items if item.kind == kind] for kind in ORDER}
+    on_map = [item for item in of["contradicts"] if is_of_map(item.field)]
+    itself = [item for item in of["contradicts"] if item not in on_map]
     told = len(of["has"]) + len(of["lacks"])
     parts = {
         f"lacks {len(of['lacks'])} of {told} things told": of["lacks"], "unread": of["unread"],
-        "the report contradicts itself": of["contradicts"], "guessed": of["guessed"],
+        "the report contradicts itself": itself, "the map has it otherwise": on_map, "guessed": of["guessed"],
     }  # fmt: skip
     said = [f"{name} ({_first(some)})" for name, some in parts.items() if some]
     said += [f"readers differ ({'; '.join(one.field for one in differing[:_SHOWN])})"] if differing else []

@@ -22,6 +22,11 @@ from sgcad_core.findings import Severity as Severity
 from sgcad_core.kinds import ActorRecord, actor_kind
 from sgcad_core.record_base import Record as Record
 from sgcad_core.records.facts import Fact as Fact
+from sgcad_core.records.place import LaidLeg as LaidLeg
+from sgcad_core.records.place import MapLeg as MapLeg
+from sgcad_core.records.place import MapPlace as MapPlace
+from sgcad_core.records.place import Place as Place
+from sgcad_core.records.place import PlaceFact as PlaceFact
 from sgcad_core.records.second_reader import Heard as Heard
 from sgcad_core.records.second_reader import Opinion as Opinion
 from sgcad_core.records.second_reader import Weights as Weights
@@ -127,6 +132,8 @@ class RoadNetwork(Record):
     layout: RoadLayout | None = None
     """The layout that `spec` was drawn from, where the writer answered one."""
     source: Source = "written"
+    place: Place | None = None
+    """What came of looking for the report's place in maps; None where no maps were given."""
     net_xml: str | None = Field(None, repr=False)
     xodr: str | None = Field(None, repr=False)
     log: str = ""

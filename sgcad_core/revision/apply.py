@@ -37,8 +37,11 @@ def apply_road_edits(network: RoadNetwork, reading: Reading, edits: Sequence[Edi
         return network
     told = {name: road._replace(posted=road.posted or f"roads.{name}.speed_limit_mph" in given)
             for name, road in told_roads(reading.roads, spec).items()}  # fmt: skip
-    made = compile_network(plain_xml(spec, told), spec)
-    return made.model_copy(update={"source": network.source, "log": f"{network.log}\n{made.log}".strip()})
+    place = network.place
+    made = compile_network(plain_xml(spec, told, place.origin if place else None), spec)
+    return made.model_copy(
+        update={"source": network.source, "place": place, "log": f"{network.log}\n{made.log}".strip()}
+    )
 
 
 def apply_scenario_edits(

@@ -6,15 +6,18 @@ Reads the lane graph; compass is north up. Knows no narrative.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 from sgcad_core.reading.text.compass import angle_of
+from sgcad_core.records.place import LaidLeg, Place
 from sgcad_core.records.specs import Compass
 from sgcad_core.roads.lane_graph import LaneGraph, road_of
 from sgcad_core.units import MPS_PER_MPH
 
 BEHIND_SPLITTER_M = 60.0
+SAME_DEG = 3.0
+"""Between a leg as drawn and its heading on the map, which is drawn in whole degrees."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +89,31 @@ def junctions(graph: LaneGraph) -> list[tuple[float, ...]]:
             legs.setdefault(ends[0], {})[ends[1]] = math.atan2(dy, dx)
             legs.setdefault(ends[1], {})[ends[0]] = math.atan2(ey, ex)
     return sorted((tuple(found.values()) for found in legs.values()), key=len, reverse=True)
+
+
+# ------------------------------------------------------------------ on a real place
+def roads_as_told(roads: list[CompiledRoad], place: Place | None) -> list[CompiledRoad]:
+    """The roads with those of a real place turned to the bearings by which the report knows them."""
+    turns = {one.road: _turn_rad(one) for one in place.legs} if place and place.found else {}
+    return [
+        replace(road, headings=tuple(h + turns[road.id] for h in road.headings)) if road.id in turns else road
+        for road in roads
+    ]
+
+
+def junctions_as_told(graph: LaneGraph, place: Place | None) -> list[tuple[float, ...]]:
+    """`junctions`, with the legs of a real place at the bearings by which the report knows them."""
+    laid = place.legs if place and place.found else ()
+    real = [(angle_of(one.bearing) - _turn_rad(one), angle_of(one.bearing)) for one in laid]
+    return [
+        tuple(next((told for at, told in real if headings_agree(leg, at, SAME_DEG)), leg) for leg in legs)
+        for legs in junctions(graph)
+    ]
+
+
+def _turn_rad(one: LaidLeg) -> float:
+    """From a leg's heading on the map to its told bearing, counter-clockwise."""
+    return math.remainder(angle_of(one.bearing) - math.radians(90.0 - one.leg.heading_deg), math.tau)
 
 
 def _leads(line: Floats, opens: bool) -> Floats:

@@ -132,6 +132,8 @@ class LaneGraph:
     circles: tuple[frozenset[str], ...] = ()
     """Nodes of each roundabout."""
     crossings: tuple[Crossing, ...] = ()
+    projection: str = ""
+    """The frame's place on the globe, in PROJ's words; "" where it has none."""
 
     @cached_property
     def derived(self) -> dict[Hashable, Any]:

@@ -13,8 +13,8 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from plugins.retriever.knowledge.chunk import Chunk
-from plugins.retriever.knowledge.osm_extract import ENDINGS as OSM_ENDINGS
 from sgcad_core.errors import ConfigError
+from sgcad_core.formats.osm.extract import ENDINGS as OSM_ENDINGS
 
 ENDINGS = (*OSM_ENDINGS, ".jsonl")
 

@@ -29,14 +29,15 @@ from sgcad_core.formats.opendrive.streets import Street, streets
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.parameters import AREA, KIND
 from sgcad_core.formats.xml import Element, to_text
+from sgcad_core.geometry.globe import Plane
 from sgcad_core.kinds import ALLEY, DRIVEWAY
 from sgcad_core.roads.lane_graph import Connection, LaneGraph
 
 TOUCHING_M = 0.05
 TRIM_M = 0.1
 """Lanes of a node that touch leave a connecting road no length: its roads are cut back by so much."""
-FRAME = "+proj=tmerc +lat_0=0 +lon_0=0 +k=1 +x_0=0 +y_0=0 +ellps=WGS84 +units=m"
-"""A metric plane, x east and y north, without a place on the globe: reports name no coordinates."""
+FRAME = Plane(0, 0).proj
+"""A metric plane, x east and y north, without a place on the globe: most reports name no coordinates."""
 ROAD_TYPES = {"rural": "rural", "town": "town", "motorway": "motorway", DRIVEWAY: "townPrivate",
               ALLEY: "townLocal"}  # fmt: skip
 """By the stated area, else by the kind of road."""
@@ -115,7 +116,7 @@ class _Document:
         header = add_child(root, "header", revMajor="1", revMinor="7", name="", version="1.00", vendor="sgcad")
         for side, value in (("north", north), ("south", south), ("east", east), ("west", west)):
             header.set(side, decimal_text(value))
-        add_child(header, "geoReference").text = etree.CDATA(FRAME)
+        add_child(header, "geoReference").text = etree.CDATA(self.graph.projection or FRAME)
 
     # -------------------------------------------------------------- roads
     def _street(self, root: Element, street: Street) -> None:

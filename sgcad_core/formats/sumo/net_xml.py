@@ -37,6 +37,7 @@ __all__ = [
     "network_figures", "parse_net", "road_of", "segments",
 ]  # fmt: skip
 
+_NO_OFFSET = ("0.00,0.00", "0.000000,0.000000")
 DEFAULT_WIDTH_M = 3.2  # SUMO's own, where a lane names none
 _DIRECTIONS: dict[str, Direction] = {"l": "left", "L": "left", "r": "right", "R": "right", "t": "u_turn"}
 
@@ -55,7 +56,14 @@ def parse_net(net_xml: str) -> LaneGraph:
     nodes = {j.get("id", ""): _node(j) for j in root.iterfind("junction") if j.get("type") != "internal"}
     _check_ends(edges, nodes)
     links = tuple(_connections(root, edges, inner))
-    return LaneGraph(edges, links, nodes, _programs(root), _circles(root), tuple(_crossings(root)))
+    return LaneGraph(edges, links, nodes, _programs(root), _circles(root), tuple(_crossings(root)), _projection(root))
+
+
+def _projection(root: Element) -> str:
+    """Of a frame without an offset, such as every network that is drawn here has; "" elsewhere."""
+    location = root.find("location")
+    told = "" if location is None else location.get("projParameter", "")
+    return told if told.startswith("+proj") and location.get("netOffset") in _NO_OFFSET else ""
 
 
 def lanes_between(net_xml: str) -> dict[tuple[str, str], int]:

@@ -17,6 +17,7 @@ from sgcad_core.case.records import Finding, PlainXml
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.parameters import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text, xml_schema
+from sgcad_core.geometry.globe import Plane
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.records.specs import Beside, Node, NodeControl, Road, RoadSpec, ToldRoad
@@ -69,21 +70,26 @@ _TYPES: Mapping[NodeControl, str] = {
 }  # fmt: skip
 
 
-def plain_xml(spec: RoadSpec, told: Mapping[str, ToldRoad] | None = None) -> PlainXml:
+def plain_xml(
+    spec: RoadSpec, told: Mapping[str, ToldRoad] | None = None, origin: tuple[float, float] | None = None
+) -> PlainXml:
     """Write a spec as plain XML. Raises InvalidOutput with findings where its references do not hold.
 
-    `told`: road id -> facts of the report; a road without an entry has the limit of its spec.
+    `told`: road id -> facts of the report; a road without an entry has the limit of its spec. `origin`: latitude and
+    longitude of (0, 0), degrees, where the network has a place on the globe.
     """
     if findings := spec_findings(spec):
         raise InvalidOutput.of(*findings)
     drawn = roadways(spec)
     joined = _connections(links(spec, drawn), spec)
-    return PlainXml(nodes=_nodes(spec), edges=_edges(drawn, told or {}), connections=joined)
+    return PlainXml(nodes=_nodes(spec, origin), edges=_edges(drawn, told or {}), connections=joined)
 
 
 # ------------------------------------------------------------------ nodes
-def _nodes(spec: RoadSpec) -> str:
+def _nodes(spec: RoadSpec, origin: tuple[float, float] | None) -> str:
     root = etree.Element("nodes")
+    if origin:
+        _location(root, spec, origin)
     meeting: dict[str, list[Road]] = {node.id: [] for node in spec.nodes}
     for road in spec.roads:
         meeting[road.from_node].append(road)
@@ -96,6 +102,18 @@ def _nodes(spec: RoadSpec) -> str:
                 place.set("radius", f"{DRIVEWAY_RADIUS_M:g}")
             _tell(place, {CONTROL: node.control})
     return to_text(root)
+
+
+def _location(root: Element, spec: RoadSpec, origin: tuple[float, float]) -> None:
+    """The frame's place on the globe: SUMO and its tools turn metres into degrees by it."""
+    west, south = (min(getattr(node, axis) for node in spec.nodes) for axis in ("x_m", "y_m"))
+    east, north = (max(getattr(node, axis) for node in spec.nodes) for axis in ("x_m", "y_m"))
+    plane = Plane(*origin)
+    low, high = plane.spot(west, south), plane.spot(east, north)
+    etree.SubElement(
+        root, "location", netOffset="0.00,0.00", convBoundary=f"{west:.2f},{south:.2f},{east:.2f},{north:.2f}",
+        origBoundary=f"{low[1]:.6f},{low[0]:.6f},{high[1]:.6f},{high[0]:.6f}", projParameter=plane.proj,
+    )  # fmt: skip
 
 
 def _node_type(node: Node, roads: Sequence[Road]) -> str:

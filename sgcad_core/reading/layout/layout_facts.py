@@ -6,6 +6,7 @@ geometry and no file format.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -46,14 +47,21 @@ class Defaults:
     speed_limit_mph: int | None = None
 
 
-def layout_of_facts(facts: RoadFacts, defaults: Defaults | None = None, *, as_counted: bool = False) -> RoadLayout:
+def layout_of_facts(
+    facts: RoadFacts,
+    defaults: Defaults | None = None,
+    *,
+    as_counted: bool = False,
+    laid: Callable[[RoadLayout], RoadLayout] | None = None,
+) -> RoadLayout:
     """The layout that carries the facts and every vehicle's path. Never fails.
 
-    `as_counted`: without the lanes that roads get beside those that the text counts.
+    `as_counted`: without the lanes that roads get beside those that the text counts. `laid`: makes another layout of
+    that of the text, such as one on the legs of a real junction, before roads get these lanes.
 
     A driveway that a vehicle uses is a leg of the hub; beside a named junction driveways are left out.
     """
-    return _Builder(facts, defaults or Defaults()).layout(as_counted)
+    return _Builder(facts, defaults or Defaults()).layout(as_counted, laid)
 
 
 def lane_notes(facts: RoadFacts) -> tuple[str, ...]:
@@ -66,10 +74,11 @@ class _Builder:
     facts: RoadFacts
     defaults: Defaults
 
-    def layout(self, as_counted: bool) -> RoadLayout:
+    def layout(self, as_counted: bool, laid: Callable[[RoadLayout], RoadLayout] | None = None) -> RoadLayout:
         """The whole layout, places and answered values laid over the roads."""
         used = with_used_legs(self.facts, self._roads_alone(), self._told_leg)
         roads = answered_layout(self.facts, with_approaches(self.facts, used))
+        roads = laid(roads) if laid else roads
         roads = roads if as_counted else with_told_lanes(self.facts, roads)
         return with_opening(self.facts, with_closed(self.facts, with_edges(self.facts, roads)))
 
