@@ -2,6 +2,7 @@
 
     template.yaml                                runs/template
     template.yaml --set max_attempts=3           runs/template-max_attempts_3
+    template.yaml --places maps/town.osm.bz2     runs/template-town
 
 So runs with different overrides have different folders. An edited YAML keeps its folder; the difference is reported
 before its results are replaced. Trackers and judges change no artifact and therefore no name.
@@ -29,10 +30,15 @@ _LOGIN = re.compile(r"//[^/@\s]+@")
 def named(config: Config, overrides: Sequence[str]) -> Config:
     """The config, renamed by its overrides if they change results."""
     pairs = (text.partition("=") for text in overrides)
-    factors = {key: yaml.safe_load(value) for key, _, value in pairs if key.split(".")[0] not in NO_ARTIFACT}
+    factors = {key: _short(yaml.safe_load(value)) for key, _, value in pairs if key.split(".")[0] not in NO_ARTIFACT}
     if not factors:
         return config
     return config.model_copy(update={"name": safe_id(f"{config.name}-{name_of(factors)}")})
+
+
+def _short(value: Any) -> Any:
+    """The name of a file or folder in the place of its path, without its endings."""
+    return Path(value).name.partition(".")[0] if isinstance(value, str) and "/" in value else value
 
 
 def write(folder: Path, config: Config) -> None:

@@ -17,6 +17,7 @@ from sgcad_core.config import load
         (("tracker=none", "tracker.uri=http://x"), "kit"),
         (("retriever={name: none}",), "kit-none"),
         (("judge.name=esmini",), "kit"),
+        (("retriever.places=maps/town.osm.bz2",), "kit-town"),
     ],
 )
 def test_overrides_that_change_results_are_part_of_the_folders_name(config_file, overrides, name):
