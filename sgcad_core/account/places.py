@@ -25,7 +25,7 @@ TOLERANCE_DEG = 35.0
 LIMIT_MPH = 3.0
 CURVED_RAD = math.radians(10.0)
 _TOLD_BY = {
-    "legs": "junction.kind", "roundabout": "junction.kind", "control": "junction.control",
+    "legs": "junction.kind", "circle": "junction.kind", "control": "junction.control",
     "limit": ".speed_limit_mph", "one_way": ".one_way", "lanes": ".lanes_total",
 }  # fmt: skip
 """Ends of the names of the facts that tell what is held against a map."""

@@ -31,8 +31,8 @@ ODD_FROM = 0.5
 """Oddity (`Plan.oddity`) from which a contact is doubted, as the validator `meeting` has it."""
 _UNMET, _OVER, _OUT = 10.0, 1.0, 1.0
 _FORCED = 2.0
-"""Doubt from which a heading that no words tell gives way. In three of 300 development reports it did, and all three
-had been read wrongly; below it three first readings were right."""
+"""Doubt from which the untold heading of a parked vehicle, or of one from a driveway or the like, gives way. In two of
+300 development reports it did, and both had been read wrongly; of vehicles on the road the first reading was right."""
 _AWRY_RAD: dict[Maneuver, float] = {
     **dict.fromkeys(("straight", "slowing"), math.radians(30)),
     **dict.fromkeys(("lane_change_left", "lane_change_right", "merge", "overtaking"), math.radians(45)),
@@ -105,10 +105,10 @@ def least_doubted(
 
     Statements of the text give way only where the declared contact does not come about at all: on the development
     reports the other side of a corner and other headings resolved three doubts of seven, and each time the codes agreed
-    with the first reading. Readings that would resolve a doubt are still noted. A heading that no words tell gives way
-    where the contact takes clearly odd driving. In a report without numbered actors the
-    other side of a corner is also used where the first one hides a stated maneuver, in any report where the first one
-    takes driving out of the lanes: the words fit both.
+    with the first reading. Readings that would resolve a doubt are still noted. The untold heading of a vehicle that is
+    parked or comes from beside the road gives way where the contact takes clearly odd driving. In a report without
+    numbered actors the other side of a corner is also used where the first one hides a stated maneuver, in any report
+    where the first one takes driving out of the lanes: the words fit both.
     """
     most = doubt(first.behavior, first.planned, first.oddity) if first.behavior else 0.0
     out = _out_of_lanes(first.behavior, first.planned, facts, graph) if first.behavior else 0

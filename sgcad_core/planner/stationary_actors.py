@@ -28,11 +28,10 @@ def stand_offs(role: Role) -> list[Drift]:
         if role.actor.lane is not None and right > role.course.lane_width_m:  # not the curb lane: it stands in it
             return [Drift(0.0), Drift(0.1, 0.5), Drift(0.1, -0.5), *(Drift(cost + 1.0, left) for left, cost in lines)]
         if aside_m := parked_beside_m(role):
-            near = ((0.0, 0.0), (0.25, 0.05), (-0.25, 0.05), (0.5, 0.15))
-            lines = [
-                *((more - aside_m, cost) for more, cost in near),
-                *((left, cost + _IN_LANE) for left, cost in lines),
-            ]
+            near = ((0.0, 0.0),) if role.course.stalls else ((0.0, 0.0), (0.3, 0.3), (0.6, 0.5), (-0.3, 0.5))
+            in_lane = 0.2 if role.course.stalls else _IN_LANE
+            there = [(more - aside_m, cost) for more, cost in near]
+            lines = [*there, *((left, cost + in_lane) for left, cost in lines)]
         return [Drift(cost, left) for left, cost in lines]
     return [Drift(0.0), *(Drift(0.1 + abs(left) / 5, left) for left in (0.5, -0.5, 1.0, -1.0, 1.8, -1.8))]
 
@@ -41,7 +40,7 @@ def parked_beside_m(role: Role) -> float:
     """How far right of the middle of its lane a parked vehicle is told to stand: where people park, else on the
     shoulder; 0 where neither is drawn, and in a lane that is not the curb's."""
     beside, right = role.course.beside_m, role.course.right_edge_m
-    if role.actor.maneuver != "parked" or role.course.stalls:
+    if role.actor.maneuver != "parked":
         return 0.0
     if role.actor.lane is not None and right > role.course.lane_width_m:
         return 0.0

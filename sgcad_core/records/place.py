@@ -52,7 +52,7 @@ class MapPlace(Record):
 class PlaceFact(Record):
     """One told fact held against the map. [start, end): its sentence in the narrative; None where it has none."""
 
-    field: Literal["legs", "lanes", "control", "limit", "one_way", "roundabout"]
+    field: Literal["legs", "lanes", "control", "limit", "one_way", "circle"]
     subject: str
     """The street, or "junction"."""
     told: str

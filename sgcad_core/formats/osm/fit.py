@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from sgcad_core.formats.osm.map_facts import compared, kind_told, lanes_agree, road_of, told_totals
 from sgcad_core.formats.osm.names import StreetName, street_name
+from sgcad_core.geometry.plane import Floats
 from sgcad_core.kinds import JOINING
 from sgcad_core.reading.layout.legs_used import legs_used
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
@@ -120,10 +120,18 @@ def known_from(place: Place | None, note: str) -> bool:
 
 
 # ------------------------------------------------------------------ which leg is which
+def _assigned(costs: Floats) -> tuple[Sequence[int], Sequence[int]]:
+    """Rows and columns of the cheapest pairs."""
+    from scipy.optimize import linear_sum_assignment  # slow to load, and few reports come with a map
+
+    rows, columns = linear_sum_assignment(costs)
+    return rows, columns
+
+
 def _paired(streets: Sequence[Leg], legs: Sequence[MapLeg], axes: Axes) -> _Pairs:
     """Told legs and those of the map, so that the angles between them are least in sum."""
     costs = np.array([[_apart(told.bearing, leg, axes) for leg in legs] for told in streets])
-    rows, columns = linear_sum_assignment(costs) if costs.size else ((), ())
+    rows, columns = _assigned(costs) if costs.size else ((), ())
     pairs = {int(i): int(k) for i, k in zip(rows, columns, strict=True) if costs[i, k] < _FAR}
     return _Pairs(
         {streets[i].bearing: legs[k] for i, k in pairs.items()},
@@ -175,7 +183,7 @@ def _with_bearings(told: Mapping[Compass, MapLeg], further: Iterable[MapLeg], ta
     legs = list(further)
     costs = np.array([[_off_deg(bearing, leg.heading_deg) for bearing in free] for leg in legs])
     if costs.size:
-        rows, columns = linear_sum_assignment(np.where(costs <= MOST_SKEW_DEG, costs, _FAR))
+        rows, columns = _assigned(np.where(costs <= MOST_SKEW_DEG, costs, _FAR))
         laid += [
             LaidLeg(bearing=free[k], leg=legs[i])
             for i, k in zip(rows, columns, strict=True) if costs[i, k] <= MOST_SKEW_DEG

@@ -57,7 +57,7 @@ def _legs_compared(facts: RoadFacts, real: MapPlace) -> Iterator[PlaceFact]:
     record = junction_kind(junction.kind)
     if record.round or real.circle_lanes:
         seen = "a roundabout" if real.circle_lanes else f"a junction of {len(real.legs)} legs"
-        yield _fact("roundabout", "junction", record.called, seen, bool(record.round) == bool(real.circle_lanes))
+        yield _fact("circle", "junction", record.called, seen, bool(record.round) == bool(real.circle_lanes))
     if not record.round:
         yield _fact("legs", "junction", str(record.legs), str(len(real.legs)), record.legs == len(real.legs))
 

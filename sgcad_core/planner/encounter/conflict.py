@@ -205,7 +205,7 @@ def _as_told(role: Role) -> list[Option]:
 
 def _towards_parked(role: Role, other: Role) -> Role:
     """A driving role whose other one stands beside the lanes: the other's line lies there."""
-    aside_m = 0.0 if is_standing(role) else parked_beside_m(other)
+    aside_m = 0.0 if is_standing(role) or other.course.stalls else parked_beside_m(other)
     if not aside_m:
         return role
     left_m = role.place.aside_m - aside_m * math.cos(role.place.angle_rad)

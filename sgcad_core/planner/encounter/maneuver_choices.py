@@ -259,7 +259,8 @@ def _other_lanes(role: Role) -> list[Drift]:
 
 def _swerves(role: Role) -> list[Drift]:
     place, found = role.place, []
-    note = HEAD_ON if _must_cross(role) else LEAVES
+    against = math.cos(place.angle_rad) < -_AGAINST
+    note = HEAD_ON if against and (role.side, role.other_side) == ("front", "front") else LEAVES
     if place.apart_m > 1.2 and abs(math.sin(place.angle_rad)) < 0.5 and abs(place.aside_m) < 16:
         for extra, cost in ((0.0, 0.3), (0.7, 0.33), (-0.7, 0.33), (1.4, 0.36), (-1.4, 0.36)):
             found.append(_drift(role, place.aside_m + extra, cost, 1.3, note))
@@ -267,12 +268,6 @@ def _swerves(role: Role) -> list[Drift]:
     for left, cost in ((1.8, 0.4), (-1.8, 0.4), (3.3, 0.6), (-3.3, 0.6)):
         found.append(_drift(role, left, cost, 1.0, _SWERVES))
     return found
-
-
-def _must_cross(role: Role) -> bool:
-    """Whether the fronts of two that come against each other in their lanes are told to touch: one leaves its lane."""
-    against = math.cos(role.place.angle_rad) < -_AGAINST
-    return against and (role.side, role.other_side) == ("front", "front")
 
 
 def _from_beside(role: Role) -> list[Drift]:

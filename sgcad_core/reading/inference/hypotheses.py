@@ -36,7 +36,7 @@ class Hypothesis(NamedTuple):
     either: bool = False
     """Whether it is the other side of a told corner in any report."""
     heading: bool = False
-    """Whether it is another heading in the place of one that no words tell."""
+    """Whether it is another heading of a parked vehicle, or of one from a driveway or the like, that no words tell."""
 
 
 def hypotheses(facts: CrashFacts) -> list[Hypothesis]:
@@ -84,7 +84,7 @@ def _headings(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesi
                 heading = turned(v.heading, by)
                 price = _NEAR if alone else _HEADING
                 other = _changed(facts, replace(v, heading=heading), f"{v.id} heads {heading}", price)
-                yield other._replace(heading=True)
+                yield other._replace(heading=v.maneuver == "parked" or v.origin is not None)
 
 
 def _turns(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis]:

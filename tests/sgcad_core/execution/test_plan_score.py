@@ -80,8 +80,9 @@ def test_the_first_reading_stands_where_no_other_can_be_placed() -> None:
 
 
 @pytest.mark.parametrize(("text", "oddity", "gives_way"), [
-    ("V1 was eastbound. V2 drove. The front of V1 struck the right side of V2.", 2.5, True),
-    ("V1 was eastbound. V2 drove. The front of V1 struck the right side of V2.", 1.5, False),
+    ("V1 was eastbound. V2 left a driveway. The front of V1 struck the right side of V2.", 2.5, True),
+    ("V1 was eastbound. V2 left a driveway. The front of V1 struck the right side of V2.", 1.5, False),
+    ("V1 was eastbound. V2 drove. The front of V1 struck the right side of V2.", 2.5, False),
     ("V1 was eastbound. V2 was southbound. The front of V1 struck the right side of V2.", 2.5, False),
 ])  # fmt: skip
 def test_a_heading_that_no_words_tell_gives_way_to_clearly_odd_driving(

@@ -75,7 +75,7 @@ SPELLED = {kinds.FOUR_LEG, kinds.ROUNDABOUT, kinds.DRIVEWAY, kinds.RAMP}
 """Names of kinds that mean nothing else in the code ("t" and "road" do)."""
 OF_FORMATS = {
     "sgcad_core/formats/sumo/net_xml.py", "sgcad_core/formats/sumo/plain_xml.py",
-    "sgcad_core/formats/opendrive/write.py",
+    "sgcad_core/formats/opendrive/write.py", "sgcad_core/formats/osm/street_map.py",
 }  # fmt: skip
 """Where `roundabout` is a word of the file format."""
 

@@ -87,7 +87,7 @@ def test_a_roundabout_is_one() -> None:
     place, layout = laid(f"{text}V2 was eastbound on College Way. {MET}")
     assert place.found
     assert layout.circle_lanes == 1
-    assert facts(place)["roundabout"][2]
+    assert facts(place)["circle"][2]
 
 
 def test_a_point_of_a_highway_by_its_number_and_a_distance() -> None:
