@@ -8,5 +8,6 @@ METERS: dict[str, float] = {
     **dict.fromkeys(("foot", "feet", "ft"), 0.3048),
     **dict.fromkeys(("yard", "yards", "yd", "yds"), 0.9144),
     **dict.fromkeys(("m", "meter", "meters", "metre", "metres"), 1.0),
+    **dict.fromkeys(("mile", "miles"), 1609.344),
 }
-"""By the word of a unit of length; exact (international foot and yard)."""
+"""By the word of a unit of length; exact (international foot, yard and mile)."""

@@ -14,7 +14,7 @@ import numpy as np
 from sgcad_core.account.inputs import ExecutedCase, is_stated
 from sgcad_core.account.records import Item
 from sgcad_core.geometry.plane import wrap_angle
-from sgcad_core.kinds import ALLEY, CHANGES, DRIVEWAY, PARKING_LOT, RAMP
+from sgcad_core.kinds import ALLEY, CHANGES, DRIVEWAY, OVER_A_LINE, PARKING_LOT, RAMP
 from sgcad_core.metrics.labels.course_label_match import vehicle_marks
 from sgcad_core.metrics.labels.course_labels import POINT_DEG, CourseLabel, RestLabel, VehicleLabel
 from sgcad_core.metrics.labels.observed_crash import VehicleMotion
@@ -32,14 +32,6 @@ _HEADING_RAD = math.radians(45.0 + 22.5)
 _LIES = {"wheels": "wheels", "roof": "roof", "left": "left side", "right": "right side"}
 _STANDS_MPS = 1.0
 """Below it a vehicle stands, as reports have it."""
-_AS_MOVES = (
-    "crossing_centerline",
-    "departing_road_left",
-    "departing_road_right",
-    "lane_change_left",
-    "lane_change_right",
-)
-"""Maneuvers that are judged as one of several moves, where these are told."""
 _SPIN_DEG = 60.0
 """Tolerance of a stated angle of spin: reports give quarter turns."""
 
@@ -80,7 +72,7 @@ def _moves(made: ExecutedCase, who: str, moves: Sequence[Move]) -> Iterator[Item
 def judged(made: ExecutedCase, who: str, name: str, fact: Fact) -> Comparison | None:
     """A vehicle's fact of motion compared with the execution; None: nothing to compare with."""
     course = made.reading.crash.courses.get(who)
-    if course and course.moves and (name == "evasion.steers" or fact.value in _AS_MOVES):
+    if course and course.moves and (name == "evasion.steers" or fact.value in OVER_A_LINE):
         return None
     if name in _JUDGES:
         return _JUDGES[name](made, who, fact.value)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
+from sgcad_core.kinds import OVER_A_LINE
 from sgcad_core.reading.junctions.junction import CIRCLE_LANES
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.language.rules import Rule
@@ -20,8 +21,6 @@ from sgcad_core.reading.text.sentence_roles import STORY_ROLES, is_impact
 from sgcad_core.records.course import CourseTold
 
 _VEHICLE = rule("common.vehicle")
-_ASIDE = ("crossing_centerline", "departing_road_left", "departing_road_right", "lane_change_left", "lane_change_right")
-"""Maneuvers over the line beside a lane."""
 _SHOWN = 110
 """Characters of a sentence that an item quotes."""
 _ABOUT = {
@@ -107,7 +106,7 @@ def _without_known(reading: Reading, sentence: Sentence) -> str:
     text = _out(rule("account.counted_lanes"), sentence.text, counts)
     text = _out(rule("account.numbered_lane"), text, {abs(v.lane) for v in named if v.lane})
     told = [reading.crash.driven.get(v.id, CourseTold()) for v in named]
-    aside = any(v.maneuver in _ASIDE for v in named) or any(one.departs or one.moves for one in told)
+    aside = any(v.maneuver in OVER_A_LINE for v in named) or any(one.departs or one.moves for one in told)
     return rule("account.edge_of_lane").sub(" ", text) if aside else text
 
 

@@ -21,7 +21,7 @@ from sgcad_core.kinds.junctions import (  # fmt: skip
     junction_kind,
     unsupported_kind,
 )
-from sgcad_core.kinds.maneuvers import CHANGES, CRASH_ROLES, MANEUVERS, CrashRole, Maneuver
+from sgcad_core.kinds.maneuvers import CHANGES, CRASH_ROLES, MANEUVERS, OVER_A_LINE, CrashRole, Maneuver
 from sgcad_core.kinds.roads import ALLEY, DRIVEWAY, JOINING, RAMP, ROAD, ROADS, UNPAINTED, RoadKind
 
 __all__ = [
@@ -39,6 +39,7 @@ __all__ = [
     "MANEUVERS",
     "MEDIAN_OPENING",
     "MERGE",
+    "OVER_A_LINE",
     "PARKING_LOT",
     "PLAIN",
     "RAMP",

@@ -13,6 +13,10 @@ Maneuver = Literal[
 MANEUVERS: tuple[Maneuver, ...] = get_args(Maneuver)
 CHANGES: Mapping[Maneuver, int] = {"lane_change_left": 1, "lane_change_right": -1}
 """Maneuvers into a lane beside the own one, and its side: 1 to the left."""
+OVER_A_LINE: tuple[Maneuver, ...] = (
+    "crossing_centerline", "departing_road_left", "departing_road_right", "lane_change_left", "lane_change_right",
+)  # fmt: skip
+"""Maneuvers over the line beside the own lane."""
 CrashRole = Literal["initiator", "responder", "bystander"]
 """Part in a crash: made the conflict, was left to deal with it, took no part in the first contact."""
 CRASH_ROLES: tuple[CrashRole, ...] = get_args(CrashRole)

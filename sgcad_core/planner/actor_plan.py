@@ -31,6 +31,8 @@ PUSHED_M = 0.8
 """Distance that a standing actor rolls when it is pushed into another one."""
 _QUEUE_M = 2.0
 """Between two that start from rest one behind the other."""
+_AGAINST = 0.8
+"""Cosine of the angle between two that come against each other."""
 _STEEP_DEG = 60.0
 """Bearing of a vehicle alongside that is to be hit with the front."""
 
@@ -228,6 +230,11 @@ def mismatch(role: Role) -> float:
 def along_with(role: Role) -> bool:
     """Whether both drive in one direction, so that their speeds decide which one is behind."""
     return abs(role.place.angle_rad) < 0.6 and not is_standing(role) and role.other_mps > 0
+
+
+def comes_against(role: Role) -> bool:
+    """Whether the other one comes the opposite way, within 37 degrees."""
+    return math.cos(role.place.angle_rad) < -_AGAINST
 
 
 def is_beside(side: Area | None) -> bool:

@@ -25,7 +25,7 @@ def stand_offs(role: Role) -> list[Drift]:
     if role.actor.maneuver == "parked":
         curb, shoulder = -(right - width / 2 - 0.2), -(right + width / 2 + 0.3)
         lines = [(curb, 0.0), (shoulder, 0.1), ((curb + shoulder) / 2, 0.15), (curb / 2, 0.6), (0.0, 0.9)]
-        if role.actor.lane is not None and right > role.course.lane_width_m:  # not the curb lane: it stands in it
+        if _in_further_lane(role):
             return [Drift(0.0), Drift(0.1, 0.5), Drift(0.1, -0.5), *(Drift(cost + 1.0, left) for left, cost in lines)]
         if aside_m := parked_beside_m(role):
             near = ((0.0, 0.0),) if role.course.stalls else ((0.0, 0.0), (0.3, 0.3), (0.6, 0.5), (-0.3, 0.5))
@@ -39,12 +39,15 @@ def stand_offs(role: Role) -> list[Drift]:
 def parked_beside_m(role: Role) -> float:
     """How far right of the middle of its lane a parked vehicle is told to stand: where people park, else on the
     shoulder; 0 where neither is drawn, and in a lane that is not the curb's."""
-    beside, right = role.course.beside_m, role.course.right_edge_m
-    if role.actor.maneuver != "parked":
-        return 0.0
-    if role.actor.lane is not None and right > role.course.lane_width_m:
+    beside = role.course.beside_m
+    if role.actor.maneuver != "parked" or _in_further_lane(role):
         return 0.0
     return beside.get("parking", beside.get("shoulder", 0.0))
+
+
+def _in_further_lane(role: Role) -> bool:
+    """Whether its lane is stated and is not the curb's: it stands in it."""
+    return role.actor.lane is not None and role.course.right_edge_m > role.course.lane_width_m
 
 
 def in_stall(role: Role) -> bool:

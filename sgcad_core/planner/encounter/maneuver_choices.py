@@ -9,13 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
-from sgcad_core.planner.actor_plan import (
-    Drift,
-    Role,
-    along_with,
-    is_beside,
-    usual_speed,
-)
+from sgcad_core.planner.actor_plan import Drift, Role, along_with, comes_against, is_beside, usual_speed
 from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.encounter.out_of_lanes import is_out
 from sgcad_core.planner.encounter.pacing_choices import from_another_road
@@ -57,8 +51,6 @@ _OVERLAPS = ((0.4, 0.0), (0.25, 0.03), (0.6, 0.05), (0.9, 0.1))
 """Shares of its width with which a vehicle meets a parked one, and their costs."""
 UNTOLD = (STEERS, LEAVES, _SWERVES, _OFF_COURSE, SKIDS)
 """Notes on driving that a report does not tell unless it tells a swerve or a skid."""
-_AGAINST = 0.8
-"""Cosine from which on another one comes against its way."""
 _GENTLE = 0.2
 """Cost of a gentle change of line where a steep one is needed."""
 
@@ -161,8 +153,11 @@ def _departures(role: Role, *, fine: bool) -> list[Drift]:
 def _far_over(role: Role, shares: Sequence[tuple[float, float]]) -> Iterator[Drift]:
     """Ways over the center line into a lane of oncoming traffic beyond the nearest one, where the other one comes."""
     aside, nearest = role.place.aside_m, role.course.opposite_m
-    against = math.cos(role.place.angle_rad) < -_AGAINST
-    if role.actor.maneuver == "crossing_centerline" and against and aside > nearest + role.course.lane_width_m / 2:
+    if (
+        role.actor.maneuver == "crossing_centerline"
+        and comes_against(role)
+        and aside > nearest + role.course.lane_width_m / 2
+    ):
         yield from _shifts(role, aside, shares)
 
 
@@ -259,8 +254,7 @@ def _other_lanes(role: Role) -> list[Drift]:
 
 def _swerves(role: Role) -> list[Drift]:
     place, found = role.place, []
-    against = math.cos(place.angle_rad) < -_AGAINST
-    note = HEAD_ON if against and (role.side, role.other_side) == ("front", "front") else LEAVES
+    note = HEAD_ON if comes_against(role) and (role.side, role.other_side) == ("front", "front") else LEAVES
     if place.apart_m > 1.2 and abs(math.sin(place.angle_rad)) < 0.5 and abs(place.aside_m) < 16:
         for extra, cost in ((0.0, 0.3), (0.7, 0.33), (-0.7, 0.33), (1.4, 0.36), (-1.4, 0.36)):
             found.append(_drift(role, place.aside_m + extra, cost, 1.3, note))

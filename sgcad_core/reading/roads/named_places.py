@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.text.compass import WORDS
 from sgcad_core.records.specs import Compass
+from sgcad_core.units import METERS
 
-_METRES = {"f": 0.3048, "y": 0.9144, "m": 1.0, "mi": 1609.344}
 _NUMBERS = {"one": 1.0, "half": 0.5}
 _BESIDE = 40
 """Characters between a distance and the name of its street."""
@@ -104,10 +104,8 @@ def _away(text: str, spans: list[NamedStreet]) -> Away | None:
     for m in rule("street_places.away").finditer(text):
         street = next((s for s in spans if m.end() <= s.start <= m.end() + _BESIDE), None)
         if street:
-            unit = m["unit"].lower()
-            metres = _METRES["mi" if unit.startswith("mi") else unit[0]]
             number = _NUMBERS.get(m["number"].lower()) or float(m["number"])
-            return Away(number * metres, WORDS[m["way"].lower()], street.text)
+            return Away(number * METERS[m["unit"].lower()], WORDS[m["way"].lower()], street.text)
     return None
 
 
