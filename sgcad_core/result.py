@@ -267,6 +267,11 @@ def _grounding(outcomes: Mapping[str, StageOutcome]) -> dict[str, float]:
     return found
 
 
+def account_so_far(record: CaseRecord) -> Account:
+    """The account of a case as it stands."""
+    return case_account(record, _end(record)[0], facts_of(record), case_notes(record))
+
+
 def case_account(record: CaseRecord, status: Status, facts: Sequence[Fact], notes: Sequence[Note]) -> Account:
     """The account of a case; of one that is not generated only what its writers were asked about."""
     network, scenario, execution, reading = record.network, record.scenario, record.execution, record.reading

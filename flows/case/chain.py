@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from flows.case import person_facts, steps
+from flows.case import person_facts, readings, steps
 from flows.case.step_log import StepLog
 from flows.case.steps import AT_ONCE, Held, Setup, StepCalls
 from flows.case_files.find_cases import Case
@@ -21,12 +21,14 @@ from flows.case_files.step_keys import StepKeys
 from sgcad_core.asking.refine import Refinement, Turn, outcome_of
 from sgcad_core.case.records import Attempt, CrashReport, Execution, Passage, StageOutcome
 from sgcad_core.config import Config
-from sgcad_core.errors import ConfigError, MissingTool, PluginFault, SgcadError
+from sgcad_core.errors import ConfigError, InvalidOutput, MissingTool, PluginFault, SgcadError, SimulationFailed
 from sgcad_core.execution.compare_executions import Judgement
 from sgcad_core.records.edits import Edit
-from sgcad_core.result import CaseRecord
+from sgcad_core.result import CaseRecord, account_so_far
 
 T = TypeVar("T")
+_COURSE = ("report", "outcomes", "execution", "judgement", "metrics")
+"""Fields of a run that follow from its reading of the report."""
 
 
 @dataclass
@@ -65,6 +67,7 @@ class CaseRun:
         try:
             if both := self.written():
                 self._execute(*both)
+            self._try_other_readings()
         except (MissingTool, ConfigError):
             raise
         except PluginFault as fault:
@@ -90,6 +93,27 @@ class CaseRun:
             self.report = report.value.model_copy(update=alone)
             return self._both(Held(self.report))
         return both
+
+    def _try_other_readings(self) -> None:
+        """Take another reading of the report whose scenario has more of what is told, if that of all readers lacks
+        something."""
+        first = account_so_far(self.record())
+        least = readings.missed(first)
+        for name, report in readings.other_readings(self.report) if self.report and least else ():
+            kept = {key: getattr(self, key) for key in _COURSE}
+            self.report, self.outcomes, self.execution, self.metrics = report, {}, None, None
+            with suppress(InvalidOutput, SimulationFailed):
+                if both := self._both(Held(report)):
+                    self._execute(*both)
+            made = account_so_far(self.record())
+            if readings.missed(made) < least:
+                least = readings.missed(made)
+                told = (*report.notes, readings.note_of(name, made, first))
+                self.report = report.model_copy(update={"notes": told})
+            else:
+                vars(self).update(kept)
+            if not least:
+                break
 
     def _both(self, report: Held[CrashReport]) -> tuple[Held[Turn], Held[Turn]] | None:
         """Write the road and the scenario of a report; None if one of them was not written."""

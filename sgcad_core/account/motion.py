@@ -74,12 +74,20 @@ def judged(made: ExecutedCase, who: str, name: str, fact: Fact) -> Comparison | 
     course = made.reading.crash.courses.get(who)
     if course and course.moves and (name == "evasion.steers" or fact.value in OVER_A_LINE):
         return None
+    if course and name == "departs" and _comes_back(course.moves):
+        return None
     if name in _JUDGES:
         return _JUDGES[name](made, who, fact.value)
     if name not in _LABELS:
         return None
     marks = _marks(made, who, _LABELS[name](fact.value))
     return Comparison(all(m >= 1.0 for m in marks.values())) if marks else None
+
+
+def _comes_back(moves: Sequence[Move]) -> bool:
+    """Whether a vehicle leaves the road and does something else before its contact; the moves are then judged."""
+    driven = [move.kind for move in moves if move.kind != "yaws"]
+    return "departs" in driven and driven[-1] != "departs"
 
 
 def _marks(made: ExecutedCase, who: str, label: VehicleLabel) -> Mapping[str, float]:

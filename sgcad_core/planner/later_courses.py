@@ -27,6 +27,8 @@ _APART_S = 0.2
 """Time after the last contact from which on the next one is looked for."""
 _PER_S = 0.05
 """Cost of a contact that comes later."""
+_STEERS_PER_M = (0.03, 0.06, 0.1)
+"""Bends of the ways on which a vehicle is led towards the stated sides of a further contact."""
 _SOON, _GOES_ON_M = 4, 5.0
 """Steps after which a vehicle that goes on still has that way before it."""
 _OFF_ROAD_M, _ON_ROAD = 1.0, 0.1
@@ -52,6 +54,16 @@ def runs_on(scene: Scene, name: str, surface: RoadSurface, after: int) -> Iterat
         way_m = np.hypot(*(found.ways[-1] - found.ways[_SOON])[:, :2].T) if len(found.ways) > _SOON else np.zeros(0)
         off = surface.off(found.ways[-1][:, :2])[0] > _OFF_ROAD_M
         yield from found.best(way_m > _GOES_ON_M, np.where(off, 0.0, _ON_ROAD)) if len(way_m) else ()
+
+
+def runs_aside(scene: Scene, name: str, after: int) -> Iterator[RunOut]:
+    """The least odd run-out of a struck vehicle behind a sample for some ways in which it steers, gently at first."""
+    if (found := run_outs(scene, name, after)) is not None:
+        plainest: dict[float, RunOut] = {}
+        for run in found.best(np.ones(len(found.runs), bool), np.zeros(len(found.runs))):
+            if not run.slides and abs(run.bend_per_m) in _STEERS_PER_M:
+                plainest.setdefault(run.bend_per_m, run)
+        yield from sorted(plainest.values(), key=lambda run: abs(run.bend_per_m))
 
 
 class RunOuts(NamedTuple):

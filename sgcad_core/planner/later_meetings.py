@@ -8,11 +8,13 @@ Knows scenes, roles and encounters; no report.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 
 from sgcad_core.planner.actor_plan import Role, Twist, is_standing
+from sgcad_core.planner.aftermath.ground_friction import RunOut
+from sgcad_core.planner.aftermath.second_contact import sides_missed
 from sgcad_core.planner.aftermath.struck_objects import standing_track
 from sgcad_core.planner.aftermath.told_order import ToldOrder, other_of, pair_of
 from sgcad_core.planner.encounter.encounter_search import Meeting, find_meeting
@@ -21,7 +23,7 @@ from sgcad_core.planner.encounter.meeting_place import place_near
 from sgcad_core.planner.encounter.motion_options import Option, forced, options
 from sgcad_core.planner.encounter.pacing_choices import pacings
 from sgcad_core.planner.encounter.pairing import Encounter
-from sgcad_core.planner.later_courses import runs_into, with_run
+from sgcad_core.planner.later_courses import runs_aside, runs_into, with_run
 from sgcad_core.planner.later_places import ToBeStruck
 from sgcad_core.planner.motion import STEP_S, Motion
 from sgcad_core.planner.scene import Scene, Track
@@ -37,6 +39,13 @@ _TARGETS_S = (1.2, 0.5, 2.5, 4.4)
 _WAYS, _AIMED_WAYS = 6, 3
 _TRIES, _RUNS = 8, 6
 """Scenes that are settled for one contact at most."""
+_STEERS, _STEERED_TRIES = 6, 2
+"""Ways in which a partner steers so that the stated sides meet, and the scenes that are settled for each."""
+_BODIES = 60
+"""Bodies that are settled again in a whole scene so that further contacts come about on the stated sides; scenes of
+many take long."""
+_UNTOLD = 3
+"""An untold contact weighs more than both sides of a told one."""
 _OUTSIDE, _STARTS_M = 20.0, 4.0
 _GRAZE_M, _FAR_M = 0.4, 14.0
 """Overlap of a graze, and how far aside of its line a vehicle is led into a contact."""
@@ -57,6 +66,8 @@ class LaterMeetings:
     role_of: Callable[[str], Role]
     encounter_of: Callable[[Contact], Encounter | None]
     order: ToldOrder
+    left: int = _BODIES
+    """Bodies that may still be settled for the stated sides of contacts that come about on others."""
 
     def arrange(self, contact: Contact, *, more: bool) -> bool:
         """Brings a contact about behind those before it; False where that is not possible. `more`: others follow."""
@@ -70,24 +81,33 @@ class LaterMeetings:
             done = self._both(contact)
         if done:
             self.order.pairs.append(pair)
+            self.order.arranged.append(contact)
         return done
 
     # -------------------------------------------------------------- trials
-    def _best_of(self, contact: Contact, trials: Iterator[tuple[Track, ...]]) -> bool:
-        """Places the tracks with which the contact comes next in order and the fewest untold ones come about."""
+    def _best_of(self, contact: Contact, trials: Iterator[tuple[Track, ...]]) -> float:
+        """Places the tracks with which the contact comes next in order, the fewest untold ones come about, and it is
+        on the stated sides; what it misses, infinite where none brings it about."""
         best: tuple[int, tuple[Track, ...]] | None = None
         for tracks in islice(trials, _TRIES):
+            if best and best[0] < _UNTOLD and not self._goes_on():
+                break
             self._place(tracks)
-            untold = self.order.untold
-            if self.order.holds(pair_of(contact)) and (best is None or untold < best[0]):
-                best = untold, tracks
+            missed = _UNTOLD * self.order.untold + sides_missed(self.scene, contact)
+            if self.order.holds(pair_of(contact)) and (best is None or missed < best[0]):
+                best = missed, tracks
             for track in tracks:
                 del self.scene.tracks[track.actor]
             self.scene.settle()
             if best and best[0] == 0:
                 break
         self._place(best[1] if best else ())
-        return best is not None
+        return best[0] if best else math.inf
+
+    def _goes_on(self) -> bool:
+        """Whether another try may be made for stated sides alone; counts it."""
+        self.left -= len(self.scene.tracks)
+        return self.left >= 0
 
     def _place(self, tracks: tuple[Track, ...]) -> None:
         self.scene.tracks.update({track.actor: track for track in tracks})
@@ -95,18 +115,45 @@ class LaterMeetings:
 
     # -------------------------------------------------------------- one is there
     def _with_partner(self, contact: Contact, partner: str, *, more: bool) -> bool:
-        new, sides = other_of(contact, partner)
+        """Lets a new actor meet one that is there, which steers otherwise where the stated sides do not meet so."""
+        scene, (new, sides) = self.scene, other_of(contact, partner)
         role = self.role_of(new)
-        return self._best_of(contact, ((track,) for track in self._tracks(role, partner, sides, more=more)))
+        least = self._best_of(contact, ((track,) for track in self._tracks(role, partner, sides, more=more)))
+        best, place = scene.runs, scene.tracks.pop(new, None)
+        steers = runs_aside(scene, partner, self.order.after) if self._may_steer(least, sides) else iter(())
+        for run in islice(steers, _STEERS):
+            if not self._goes_on():
+                break
+            scene.runs = with_run(scene, partner, run)
+            scene.settle()
+            tracks = self._tracks(role, partner, sides, more=more, wants=(sides,)) if self.order.kept else ()
+            missed = self._best_of(contact, islice(((track,) for track in tracks), _STEERED_TRIES))
+            track = scene.tracks.pop(new, None)
+            if missed < least:
+                least, best, place = missed, scene.runs, track
+            scene.runs = best
+            if not least:
+                break
+        scene.runs = best
+        self._place((place,) if place else ())
+        return place is not None
 
-    def _tracks(self, role: Role, partner: str, sides: Sides, *, more: bool) -> Iterator[Track]:
-        """Tracks of a new actor that its partner comes across, the most ordinary first."""
+    @staticmethod
+    def _may_steer(missed: float, sides: Sides) -> bool:
+        """Whether the search goes on with a partner that steers; not where two meet along one line."""
+        return missed > 0 and set(sides) != {"front", "back"}
+
+    def _tracks(
+        self, role: Role, partner: str, sides: Sides, *, more: bool, wants: Sequence[Sides | None] | None = None
+    ) -> Iterator[Track]:
+        """Tracks of a new actor that its partner comes across, the most ordinary first; `wants`: the sides to meet on,
+        else the stated ones and then any."""
         after = self.order.after
         if is_standing(role):
             place = ToBeStruck(self.scene, role, partner, sides, self.surface, more)
             yield from (standing_track(self.scene, role.actor, pose) for pose in islice(place.poses(after), _TRIES))
         ways: list[list[Option]] = []
-        for want in (sides, None):
+        for want in (sides, None) if wants is None else wants:
             for number, target_s in enumerate(_TARGETS_S):
                 if number == len(ways):
                     ways.append(self._ways(role, partner, sides, after + round(target_s / STEP_S), plain=not number))
@@ -153,22 +200,35 @@ class LaterMeetings:
 
     # -------------------------------------------------------------- both are there
     def _run_together(self, contact: Contact) -> bool:
-        """Lets one of both run out so that it touches the other; as before where that does not come about."""
+        """Lets one of both run out so that it touches the other, on the stated sides if that is possible; as before
+        where that does not come about."""
         scene, before = self.scene, self.scene.runs
+        best, least = before, math.inf
+        for name, run in self._runs_together(contact):
+            if best is not before and not self._goes_on():
+                break
+            scene.runs = with_run(scene, name, run)
+            scene.settle()
+            if self.order.holds(pair_of(contact)) and (missed := sides_missed(scene, contact)) < least:
+                best, least = scene.runs, missed
+            scene.runs = before
+            scene.settle()
+            if least == 0:
+                break
+        scene.runs = best
+        scene.settle()
+        return best is not before
+
+    def _runs_together(self, contact: Contact) -> Iterator[tuple[str, RunOut]]:
+        """Run-outs of either of two that lead into the other one."""
         for name, other in ((contact.striker, contact.struck), (contact.struck, contact.striker)):
-            for run in islice(runs_into(scene, name, other, self.order.after), _RUNS):
-                scene.runs = with_run(scene, name, run)
-                scene.settle()
-                if self.order.holds(pair_of(contact)):
-                    return True
-                scene.runs = before
-                scene.settle()
-        return False
+            runs = islice(runs_into(self.scene, name, other, self.order.after), _RUNS)
+            yield from ((name, run) for run in runs)
 
     # -------------------------------------------------------------- none is there
     def _both(self, contact: Contact) -> bool:
         found = self.encounter_of(contact)
-        return found is not None and self._best_of(contact, self._pairs(found))
+        return found is not None and self._best_of(contact, self._pairs(found)) < math.inf
 
     def _pairs(self, found: Encounter) -> Iterator[tuple[Track, ...]]:
         """The two on the clock of the scene, at several places and times, where no actor is in their way."""

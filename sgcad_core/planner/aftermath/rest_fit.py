@@ -36,7 +36,7 @@ from sgcad_core.planner.aftermath.rest_candidates import (
     oddities,
 )
 from sgcad_core.planner.aftermath.rollover import rolls_over
-from sgcad_core.planner.aftermath.second_contact import missed_again
+from sgcad_core.planner.aftermath.second_contact import WRONG_SIDE, missed_again
 from sgcad_core.planner.aftermath.told_order import ToldOrder
 from sgcad_core.planner.later_courses import RunOuts, run_outs, with_run
 from sgcad_core.planner.motion import STEP_S
@@ -203,7 +203,8 @@ class RestFit:
         """The cost of the settled scene: its distance from what is stated."""
         ends = {name: self.scene.tracks[name].poses[-1:] for name in self.wanted}
         missed = sum(missed_again(self.scene, pair) for pair in self.scene.again if pair <= self.scene.tracks.keys())
-        missed += 0.0 if self.order is None or self.order.kept else _PARTED
+        if self.order is not None:
+            missed += WRONG_SIDE * self.order.sides_missed if self.order.kept else _PARTED
         return missed + sum(float(self._costs(name, course, ends[name])[0]) for name, course in self.wanted.items())
 
     def _meet_again(self, pair: frozenset[str]) -> bool:

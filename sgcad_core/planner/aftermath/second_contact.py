@@ -1,4 +1,4 @@
-"""Second contacts of the two that touched first: whether they come about, and on which sides.
+"""The sides on which actors touch after the first contact, and whether the two that touched first do so again.
 
 Knows poses on one clock and told sides; no report and no roads.
 """
@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import SIDES, Box, Floats, Size, contact_area, gaps_where_near, overlap_centers, sides_at
-from sgcad_core.planner.scene import Scene
-from sgcad_core.records.specs import Area
+from sgcad_core.planner.scene import Scene, Track
+from sgcad_core.records.specs import Area, Contact
 
 MISSED = 1.5
 """Cost of a stated contact behind the first one that does not happen."""
@@ -29,19 +29,31 @@ def missed_again(scene: Scene, pair: frozenset[str]) -> float:
     names = sorted(pair)
     told = tuple(scene.sides.get(pair, {}).get(name) for name in names)
     one, other = (scene.tracks[name] for name in names)
-    seen = _again(one.poses, other.poses, one.size, other.size)
-    return min((WRONG_SIDE * _differing(told, sides) for sides in seen), default=NOT_AGAIN)
+    seen = _touches(one.poses, other.poses, one.size, other.size)
+    return min((WRONG_SIDE * _differing(told, sides) for sides in seen[1:]), default=NOT_AGAIN)
+
+
+def sides_missed(scene: Scene, contact: Contact) -> int:
+    """The number of stated sides on which the first touch of two in a settled scene is another one; 0 where they do
+    not touch."""
+    seen = first_sides(scene.tracks[contact.striker], scene.tracks[contact.struck])
+    return _differing((contact.striker_area, contact.struck_area), seen) if seen else 0
+
+
+def first_sides(one: Track, other: Track) -> tuple[Area, Area] | None:
+    """The sides on which two tracks touch first; None where they never do."""
+    return next(iter(_touches(one.poses, other.poses, one.size, other.size)), None)
 
 
 def _differing(told: tuple[Area | None, ...], seen: tuple[Area, ...]) -> int:
     return sum(one is not None and one != other for one, other in zip(told, seen, strict=True))
 
 
-def _again(a: Floats, b: Floats, size: Size, other: Size) -> list[tuple[Area, Area]]:
-    """The sides on which two tracks touch, each time behind the first one."""
+def _touches(a: Floats, b: Floats, size: Size, other: Size) -> list[tuple[Area, Area]]:
+    """The sides on which two tracks touch, each time anew."""
     met = np.flatnonzero(gaps_where_near(a, size, b, other) <= 0.0)
     begins = met[np.diff(met, prepend=-_APART - 1) > _APART]
-    boxes = [(Box.at(a[k], size), Box.at(b[k], other)) for k in begins[1:]]
+    boxes = [(Box.at(a[k], size), Box.at(b[k], other)) for k in begins]
     return [(contact_area(one, two), contact_area(two, one)) for one, two in boxes]
 
 

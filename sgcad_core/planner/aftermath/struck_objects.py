@@ -15,6 +15,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import SIDES, Floats, Size, gaps_where_near
 from sgcad_core.planner.actor_plan import is_beside
+from sgcad_core.planner.aftermath.second_contact import first_sides
 from sgcad_core.planner.aftermath.told_order import ToldOrder, touched
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import STEP_S, Motion, stand
@@ -34,6 +35,10 @@ GLANCE_M = 0.15
 """By which a vehicle overlaps a firm thing beside its way, off which it glances."""
 _ALL_TOLD = 1.0
 """A rest with a lower cost misses no stated part."""
+_OTHER_SIDE = 1.0
+"""Cost of striking with another side than told: as much as a missed part of the rest."""
+_FURTHER, _ALL_PLACES = 2, 99
+"""Places at which it is struck that are tried behind the first one, where further contacts follow and where not."""
 _PAST_M = (6.0, 10.0, 16.0, 25.0, 40.0, 60.0)
 _OFF_ROAD_M = 0.3
 _GENTLE_MPS = 0.8
@@ -88,18 +93,22 @@ def _out_of_reach(scene: Scene, strike: Strike) -> Floats:
 def place_thing(
     scene: Scene, strike: Strike, surface: RoadSurface, cost: Callable[[], float], order: ToldOrder, *, more: int
 ) -> bool:
-    """Places an object where the rest is best; False where no place is struck next in order.
+    """Places an object where it is struck with the stated side and the rest is best; False where no place is struck
+    next in order.
 
     `cost`: of the rest as settled. `more`: number of contacts that follow.
     """
     best: tuple[float, Track] | None = None
+    further = _FURTHER if more else _ALL_PLACES
     for pose in _poses(scene, strike, surface, order.after, more=more):
         track = _stand(scene, strike, pose)
         scene.settle()
-        if _is_struck(scene, strike, order) and (best is None or cost() < best[0]):
-            best = (cost(), track)
+        if _is_struck(scene, strike, order):
+            missed = _OTHER_SIDE * _on_another_side(scene, strike) + (0.0 if more else cost())
+            best = (missed, track) if best is None or missed < best[0] else best
+            further -= 1
         del scene.tracks[strike.thing.id]
-        if best is not None and (more or best[0] < _ALL_TOLD):
+        if best is not None and (best[0] < _ALL_TOLD or further < 0):
             break
     if best is not None:
         scene.tracks[strike.thing.id] = best[1]
@@ -119,6 +128,12 @@ def _is_struck(scene: Scene, strike: Strike, order: ToldOrder) -> bool:
     hits = [t for t in scene.touches if strike.thing.id in (t.first, t.second)]
     pair = frozenset((strike.by, strike.thing.id))
     return bool(hits) and touched(hits[0]) == pair and hits[0] is not scene.touches[0] and order.holds(pair)
+
+
+def _on_another_side(scene: Scene, strike: Strike) -> bool:
+    """Whether the vehicle touches the object first with another side than the stated one."""
+    seen = first_sides(scene.tracks[strike.by], scene.tracks[strike.thing.id])
+    return strike.side is not None and seen is not None and seen[0] != strike.side
 
 
 def standing_track(scene: Scene, thing: Actor, pose: Floats, *, fixed: bool = False) -> Track:

@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
+from sgcad_core.planner.aftermath.second_contact import sides_missed
 from sgcad_core.planner.aftermath.wreck_bodies import Touch
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import Scene
@@ -52,6 +53,8 @@ class ToldOrder:
     scene: Scene
     expected: frozenset[Pair]
     pairs: list[Pair] = field(default_factory=list)
+    arranged: list[Contact] = field(default_factory=list)
+    """Further contacts of vehicles that were brought about, with their sides."""
 
     @property
     def after(self) -> int:
@@ -63,6 +66,11 @@ class ToldOrder:
     def kept(self) -> bool:
         """Whether all of them still come about, in order."""
         return self.holds()
+
+    @property
+    def sides_missed(self) -> int:
+        """The number of stated sides on which the arranged contacts do not come about."""
+        return sum(sides_missed(self.scene, contact) for contact in self.arranged)
 
     def holds(self, *more: Pair) -> bool:
         """Whether they, and then more pairs, come about in order in the scene as it is settled."""

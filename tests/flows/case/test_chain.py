@@ -218,6 +218,22 @@ def test_a_second_opinion_that_leads_to_no_scenario_leaves_the_rules_reading(mon
     assert any("the rules' reading stands" in str(note) for note in result["notes"])
 
 
+def test_the_rules_reading_is_kept_where_the_scenario_of_both_readers_misses_more(monkeypatch, tmp_path):
+    from sgcad_core.records.second_reader import Heard, Opinion, Weights
+
+    turns = Opinion(heard={"other": Heard(value="turn_left", p=0.9)}, weights={"other": Weights()})
+    monkeypatch.setattr("sgcad_core.reading.second_reader.learned_reader.opinion", lambda narrative: turns)
+    source = tmp_path / "c1.txt"
+    source.write_text(
+        "The AV was traveling north on Main Street. An SUV, traveling south in the opposite direction, struck the front "
+        "of the AV with its front bumper."
+    )
+    config = load(settings.ROOT / "configs" / "template.yaml", ("second_opinion=learned", "tracker=jsonl"))
+    result = run_case(config, Case(source, "c1"), tmp_path / "out", "d1").result
+    assert all(fact["basis"] != "model" for fact in result["facts"])
+    assert any("the rules' reading is kept: its scenario misses" in str(note) for note in result["notes"])
+
+
 def test_a_models_answers_to_the_whole_report_join_the_reading(monkeypatch, tmp_path):
     from sgcad_core.reading.second_reader.field_claims import KINDS
     from sgcad_core.records.second_reader import Answered, Opinion, Weights

@@ -10,7 +10,7 @@ from sgcad_core.account.assumed import assumed_items
 from sgcad_core.account.build import account_of
 from sgcad_core.account.contacts import contact_items
 from sgcad_core.account.inputs import ExecutedCase, is_stated
-from sgcad_core.account.motion import motion_items
+from sgcad_core.account.motion import judged, motion_items
 from sgcad_core.account.notes import notes_of
 from sgcad_core.account.places import _of_one_half, place_items
 from sgcad_core.account.unread_text import unread_items
@@ -19,6 +19,7 @@ from sgcad_core.config import load
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.text.normalise import split_sentences
 from sgcad_core.reading.text.traced_text import TracedText
+from sgcad_core.records.course import CourseTold, Move
 from sgcad_core.records.facts import Fact
 from sgcad_core.settings import ROOT
 
@@ -283,3 +284,11 @@ def test_whom_the_text_describes_and_the_scenario_lacks_is_told_by_its_words(mad
     found = [item.text for item in unread_items(replace(made, reading=reading)) if item.field == "text.vehicle"]
     assert found == ["'old tractor' is named"]
     assert reading.text_of(reading.sentences[-1]) == "A man on foot (V1) looked on."
+
+
+@pytest.mark.parametrize(("moves", "asked"), [(("departs", "crosses"), False), (("departs",), True)])
+def test_a_vehicle_that_left_the_road_and_came_back_is_judged_by_its_moves(made, moves, asked):
+    course = CourseTold(moves=tuple(Move(kind) for kind in moves), departs="right")
+    crash = replace(made.reading.crash, courses={"V1": course})
+    told = replace(made, reading=replace(made.reading, crash=crash))
+    assert (judged(told, "V1", "departs", fact("vehicles.V1.departs", "right")) is not None) is asked

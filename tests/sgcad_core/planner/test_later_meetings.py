@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from sgcad_core.geometry.plane import box_gaps
+from sgcad_core.geometry.plane import Box, box_gaps, contact_area
 from sgcad_core.planner import Plan, plan
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
 from tests.sgcad_core.planner.crash_scenes import network
@@ -93,3 +93,20 @@ def test_things_struck_in_a_row_give_way_to_the_vehicle() -> None:
     cars = (car(1, "S", "departing_road_right"), *posts)
     told = tuple(f"V1 front O{n} front" for n in (1, 2, 3))
     assert met("straight", cars, *told) == [("O1", "V1"), ("O2", "V1"), ("O3", "V1")]
+
+
+@pytest.mark.parametrize("told", ["V2 front V3 left", "V2 left V3 left", "V2 right V3 front"])
+def test_a_struck_vehicle_meets_an_oncoming_one_on_the_told_sides(told: str) -> None:
+    cars = (car(1, "S"), car(2, "S", "stopped"), car(3, "N"))
+    behavior = BehaviorSpec(actors=cars, contacts=hits("V1 front V2 back", told))
+    made = plan(behavior, network("straight"))
+    _, own, _, other = told.split()
+    assert touching_sides(behavior, made, "V2", "V3") == (own, other)
+
+
+def touching_sides(behavior: BehaviorSpec, made: Plan, one: str, other: str) -> tuple[str, str]:
+    """The sides on which two first overlap."""
+    tracks, sizes = {t.actor: t.pose for t in made.trajectories}, {a.id: size_m(a) for a in behavior.actors}
+    at = int(np.flatnonzero(box_gaps(tracks[one], sizes[one], tracks[other], sizes[other]) <= 0)[0])
+    boxes = [Box.at(tracks[name][at], sizes[name]) for name in (one, other)]
+    return contact_area(*boxes), contact_area(*reversed(boxes))

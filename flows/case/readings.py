@@ -1,0 +1,43 @@
+"""The readings of a report that are tried as wholes: all readers, the rules with the learned one, the rules alone.
+
+Field by field the surer reader is taken (sgcad_core/reading/second_reader); whether the values go together shows only
+in the scenario. So where that lacks something, the other readings are tried too, and the one whose scenario has most of
+what is told is kept. Knows reports and accounts; no steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sgcad_core.account import Account
+from sgcad_core.case.records import CrashReport
+
+RULES, LEARNED = "the rules' reading", "the reading of the rules and the learned reader"
+
+
+def other_readings(report: CrashReport) -> Iterator[tuple[str, CrashReport]]:
+    """(name, report) of each other reading, where a second reader changed something; none twice."""
+    opinion, seen = report.opinion, [report.reading.facts]
+    if opinion is None or all(fact.basis != "model" for fact in report.reading.facts):
+        return
+    without_answers = opinion.model_copy(update={"answered": None})
+    for name, said in ((LEARNED, without_answers if opinion.guesses else None), (RULES, None)):
+        if name == LEARNED and said is None:
+            continue
+        other = report.model_copy(update={"opinion": said})
+        if other.reading.facts not in seen:
+            seen.append(other.reading.facts)
+            yield name, other
+
+
+def missed(account: Account) -> float:
+    """The number of things that keep a scenario from being right as far as told; infinite where there is none."""
+    if account.verdict == "none":
+        return float("inf")
+    return float(sum(item.kind in ("lacks", "contradicts", "guessed") for item in account.items))
+
+
+def note_of(name: str, kept: Account, before: Account) -> str:
+    """The remark that another reading than the fused one was kept."""
+    was = "came to no scenario" if before.verdict == "none" else f"misses {missed(before):.0f}"
+    return f"{name} is kept: its scenario misses {missed(kept):.0f} of what is told, that of all readers {was}"
