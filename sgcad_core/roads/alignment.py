@@ -112,12 +112,12 @@ def _bend_deg(a: Meeting, b: Meeting) -> float:
 def _left_lanes(a: Meeting, b: Meeting, roads: Sequence[Meeting]) -> int:
     """Lanes at the left of an approach that lead to the left alone (as `connections` uses them)."""
     turns = a.road.turns_forward if a.inward_is_forward else a.road.turns_backward
-    left = [r for r in roads if r.lanes_out and r.road is not a.road and _bend_deg(a, r) > LEFT_DEG]
-    if not left or not b.lanes_out:
+    left = any(r.lanes_out and r.road is not a.road and _bend_deg(a, r) > LEFT_DEG for r in roads)
+    if not b.lanes_out:
         return 0
     if len(turns) == a.lanes_in:
         return next((k for k, turn in enumerate(reversed(turns)) if turn != "left"), 0)
-    return int(a.lanes_in > b.lanes_out)
+    return int(left and a.lanes_in > b.lanes_out)
 
 
 def aligned(

@@ -27,7 +27,9 @@ def drive_heading(facts: RoadFacts) -> Compass | None:
         return None
     told = [v for v in facts.crash.vehicles if v.heading and v.heading_stated]
     street = {axis_of(v.heading) for v in told if v.origin not in DRIVES and v.heading}
-    return next((v.heading for v in told if v.origin in DRIVES and v.heading and axis_of(v.heading) not in street), None)
+    return next(
+        (v.heading for v in told if v.origin in DRIVES and v.heading and axis_of(v.heading) not in street), None
+    )
 
 
 def across_drive(street: RoadFact, streets: list[RoadFact], heading: Compass | None) -> RoadFact:
@@ -62,4 +64,3 @@ def ramp_alone(facts: RoadFacts) -> tuple[Leg, ...]:
         )
         for end in ends
     )  # fmt: skip
-

@@ -78,7 +78,7 @@ def test_through_lanes_line_up_across_a_junction(
     north: tuple[int, int, int], south: tuple[int, int, int], first: Median, second: Median, tee: bool
 ) -> None:
     legs = (leg("N", *north, median=first), leg("S", *south, median=second), *(SIDE[:1] if tee else SIDE))
-    if tee:  # nobody turns left where no road lies
+    if tee:  # without left-turn lanes where no road lies to the left
         legs = (leg("N", *north, median=first), leg("S", 0, *south[1:], median=second), SIDE[0])
     spec = road_spec(RoadLayout(legs=legs))
     assert jogs(spec) == pytest.approx([0.0, 0.0], abs=0.02)
@@ -94,6 +94,24 @@ def test_center_lanes_and_one_way_roads_line_up(north: dict[str, int], south: di
     spec = road_spec(RoadLayout(legs=(leg("N", **north), leg("S", **south), *SIDE)))
     assert jogs(spec)
     assert np.abs(jogs(spec)).max() < 0.02
+
+
+def test_a_road_of_five_lanes_keeps_its_line_where_a_side_road_lies_on_one_side_only() -> None:
+    layout = RoadLayout(legs=(leg("N", 1, 2, 2), leg("S", 1, 2, 2), SIDE[0]))
+    spec = road_spec(layout)
+    drawn = roadways(spec)
+    on = [x for x in links(spec, drawn) if {x.from_edge.strip("-"), x.to_edge.strip("-")} == {"N", "S"}]
+    assert {(x.from_edge, x.from_lane, x.to_lane) for x in on} == {
+        ("N", 0, 0), ("N", 1, 1), ("S", 0, 0), ("S", 1, 1), ("S", 2, 1),
+    } or {(x.from_edge, x.from_lane, x.to_lane) for x in on} == {
+        ("N", 0, 0), ("N", 1, 1), ("N", 2, 1), ("S", 0, 0), ("S", 1, 1),
+    }  # fmt: skip
+    ends = [
+        (lane_end(drawn[road_of(x.from_edge)[0]], x.from_edge, x.from_lane, True),
+         lane_end(drawn[road_of(x.to_edge)[0]], x.to_edge, x.to_lane, False))
+        for x in on if x.from_lane == x.to_lane
+    ]  # fmt: skip
+    assert max(abs(float(np.cross(a[1], b[0] - a[0]))) for a, b in ends) < 0.02
 
 
 def test_a_road_with_a_left_turn_lane_keeps_its_line_behind_a_driveway() -> None:
