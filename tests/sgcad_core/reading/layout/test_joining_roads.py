@@ -55,7 +55,8 @@ def test_the_lanes_told_of_the_street_stay_with_it() -> None:
 
 
 @pytest.mark.parametrize("text", [
-    "V1 and V2 were traveling south on an off-ramp, V1 ahead of V2. V1 stopped and the front of V2 struck the back of V1.",
+    "V1 and V2 were traveling south on an off-ramp, V1 ahead of V2. V1 stopped and the front of V2 struck the back of "
+    "V1.",
     "V1 was stopped on the southbound exit ramp. V2 came from the freeway onto the same southbound ramp. The front "
     "of V2 struck the back of V1.",
     "V1 was traveling south on a single lane entrance ramp to a freeway. The front of V1 struck a pole.",
