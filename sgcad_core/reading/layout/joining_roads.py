@@ -19,9 +19,9 @@ from sgcad_core.records.specs import Compass, Leg
 
 
 def drive_heading(facts: RoadFacts) -> Compass | None:
-    """Where those head who come out of a driveway, where nobody else is told to head along that axis.
+    """Where those head who come out of a driveway, if no other vehicle is told to head along that axis.
 
-    Who comes out of a driveway crosses the street or turns into it, so the street lies across.
+    A vehicle from a driveway crosses the street or turns into it, so the street lies across.
     """
     if facts.junction.kind not in (DRIVEWAY, ALLEY):
         return None
@@ -44,7 +44,7 @@ def across_drive(street: RoadFact, streets: list[RoadFact], heading: Compass | N
 
 
 def ramp_alone(facts: RoadFacts) -> tuple[Leg, ...]:
-    """A one-way ramp without the road that it leaves or joins, where everybody is told to be on it; else none."""
+    """A one-way ramp without the road that it leaves or joins, where all vehicles are told to be on it; else none."""
     ramp = next((r for r in facts.roads if r.kind == RAMP), None)
     vehicles = facts.crash.vehicles
     if ramp is None or not vehicles or not all(v.origin == RAMP or v.id in ramp.vehicles for v in vehicles):
