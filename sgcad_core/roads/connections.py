@@ -249,6 +249,8 @@ def _join(
 ) -> list[Link]:
     """Lanes side by side into the exit: right turns and merges from the right keep right, others keep left."""
     room, count = target.way.lanes, len(serving)
+    if movement == "through":
+        count = max(count - _left_alone(approach, serving), 1)
     keeps_right = movement == "right" or _merges_from_right(approach, target, arriving)
     pairs = []
     for k, lane in enumerate(serving):
@@ -257,6 +259,12 @@ def _join(
     if movement == "through" and count < room and len(arriving) <= 2:
         pairs += _widening(serving, room, keeps_right, approach, arriving)
     return [Link(approach.edge, lane, target.way.edge, goal) for lane, goal in pairs]
+
+
+def _left_alone(approach: _Way, serving: Sequence[int]) -> int:
+    """Left-turn lanes that go straight on since no road lies to the left: behind the node they end in the next lane."""
+    stated = approach.turns if len(approach.turns) == approach.lanes else ()
+    return sum(bool(stated) and stated[lane] == "left" for lane in serving)
 
 
 def _widening(

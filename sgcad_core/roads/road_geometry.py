@@ -15,8 +15,8 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats, arc_lengths, offset_polyline, resample
 from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.records.specs import Beside, Leg, Node, Road, RoadSpec, is_aisle
+from sgcad_core.roads.alignment import Alignment, RoadSection, aligned, joined_road, throughs
 from sgcad_core.roads.circle import SPLITTER_M
-from sgcad_core.roads.ramps import joined_road
 
 Direction = Literal["forward", "backward"]
 
@@ -38,6 +38,8 @@ AISLE_LANE_M = 3.6
 ORDER: tuple[Beside, ...] = get_args(Beside)
 STEP_M = 3.0
 TAPER_M = 30.0
+WITHIN_M = 15.0
+"""From a node to the corners of a junction of wide roads: up to there a gap keeps the width that it has at the node."""
 OPENING_M = 15.0
 """Length of an opening in a median (AASHTO 2018, 9.8: 40 ft and more)."""
 ISLAND_M = 40.0
@@ -83,14 +85,18 @@ class Roadway:
         (start, end), (at_start, at_end) = self.end_gaps_m, self.opens
         if direction == "backward":
             start, end, at_start, at_end = end, start, at_end, at_start
-        tapers = [max(min(ISLAND_M if opens else TAPER_M, along[-1] / 2), 1e-9) for opens in (at_start, at_end)]
-        from_start, from_end = _ease(along / tapers[0], at_start), _ease((along[-1] - along) / tapers[1], at_end)
+        from_start = _eased(along, float(along[-1]), at_start)
+        from_end = _eased(along[-1] - along, float(along[-1]), at_end)
         return start + (self.gap_m - start) * from_start + (end - self.gap_m) * (1 - from_end)
 
 
-def _ease(share: Floats, opens: bool = False) -> Floats:
-    """0 to 1 with level ends; where a road opens into a roundabout, level at 1 only: it enters at an angle."""
-    x = np.clip(share, 0.0, 1.0)
+def _eased(from_end: Floats, length_m: float, opens: bool) -> Floats:
+    """0 to 1 with level ends, away from the end of a road; the last metres lie within the junction.
+
+    Where a road opens into a roundabout, level at 1 only: it enters at an angle.
+    """
+    taper, held = (ISLAND_M, 0.0) if opens else (TAPER_M, min(WITHIN_M, length_m / 4))
+    x = np.clip((from_end - held) / max(min(taper, length_m / 2 - held), 1e-9), 0.0, 1.0)
     return np.asarray(x * (2 - x) if opens else x * x * (3 - 2 * x), dtype=float)
 
 
@@ -140,17 +146,34 @@ def roadways(spec: RoadSpec) -> dict[str, Roadway]:
     """Every road with its geometry, by id. The spec's references must hold (`road_spec.spec_findings`)."""
     nodes = {node.id: node for node in spec.nodes}
     meeting = _roads_at(spec)
-    return {road.id: _roadway(road, nodes, meeting) for road in spec.roads}
+    lined_up = aligned(list(throughs(nodes, meeting)), _section, lambda road: _is_single(road, meeting))
+    return {road.id: _roadway(road, nodes, meeting, lined_up) for road in spec.roads}
 
 
-def _roadway(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> Roadway:
+def _section(road: Road) -> RoadSection:
+    width = lane_width_m(road)
+    gap = width if has_center_lane(road) else median_gap_m(road)
+    return RoadSection(width, gap, -max(road.lanes_forward, road.lanes_backward) * width / 2)
+
+
+def _is_single(road: Road, meeting: Mapping[str, Sequence[Road]]) -> bool:
+    """Whether it is a one-way road without another beside it that carries the opposite traffic."""
+    return not two_way(road) and not _has_twin(road, meeting[road.from_node])
+
+
+def _roadway(
+    road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]], lined_up: Alignment
+) -> Roadway:
     inner = [(p.x_m, p.y_m) for p in road.via]
     ends = nodes[road.from_node], nodes[road.to_node]
     points = np.array([(ends[0].x_m, ends[0].y_m), *inner, (ends[1].x_m, ends[1].y_m)], dtype=float)
     there = meeting[road.from_node], meeting[road.to_node]
     opens = _opens(road, there[0]), _opens(road, there[1])
-    gaps = _end_gap(road, there[0]), _end_gap(road, there[1])
-    line = _cut(smooth(points) + _beside_road(road, nodes, meeting), ends[0].opening, ends[1].opening)
+    gaps = _end_gap(road, ends[0], there[0], lined_up), _end_gap(road, ends[1], there[1], lined_up)
+    line = smooth(points) + _beside_road(road, nodes, meeting, lined_up)
+    if aside := lined_up.aside_m.get(road.id):
+        line = offset_polyline(line, -aside)
+    line = _cut(line, ends[0].opening, ends[1].opening)
     return Roadway(road, line, median_gap_m(road), gaps, _has_twin(road, there[0]), opens)
 
 
@@ -163,7 +186,9 @@ def _cut(line: Floats, at_start: bool, at_end: bool) -> Floats:
     return resample(line, np.array([start, *along[(along > start) & (along < end)], end]))
 
 
-def _beside_road(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]]) -> Floats:
+def _beside_road(
+    road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Sequence[Road]], lined_up: Alignment
+) -> Floats:
     """(2,) shift of a ramp to the right of the line through its nodes, so that it meets the outer lane of its road."""
     way = joined_road(road, nodes, meeting)
     if way is None:
@@ -171,7 +196,8 @@ def _beside_road(road: Road, nodes: Mapping[str, Node], meeting: Mapping[str, Se
     both, width = two_way(way.road), lane_width_m(way.road)
     inner = (median_gap_m(way.road) + has_center_lane(way.road) * width) / 2 if both else -way.lanes * width / 2
     right = np.array([way.travel[1], -way.travel[0]])
-    found: Floats = right * (inner + (way.lanes - 0.5) * width)
+    aside = lined_up.aside_m.get(way.road.id, 0.0) * (1 if way.forward else -1)
+    found: Floats = right * (inner + aside + (way.lanes - 0.5) * width)
     return found
 
 
@@ -203,12 +229,18 @@ def _roads_at(spec: RoadSpec) -> dict[str, list[Road]]:
     return found
 
 
-def _end_gap(road: Road, meeting: Sequence[Road]) -> float:
-    """At a node of two roads both have the narrower gap, so that lanes meet; elsewhere the road keeps its own."""
+def _end_gap(road: Road, node: Node, meeting: Sequence[Road], lined_up: Alignment) -> float:
+    """At a node of two roads both have the narrower gap, so that lanes meet; at a junction that of what goes on there.
+
+    Of a road with a two-way left-turn lane: what lies between the directions besides that lane.
+    """
     if _opens(road, meeting):
         return max(SPLITTER_M, median_gap_m(road))
-    gaps = [median_gap_m(r) for r in meeting]
-    return min(gaps) if len(meeting) == 2 else median_gap_m(road)
+    centered = any(has_center_lane(r) for r in meeting)
+    if len(meeting) == 2 and not centered:
+        return min(median_gap_m(r) for r in meeting)
+    gap = lined_up.gaps_m.get((road.id, node.id))
+    return median_gap_m(road) if gap is None else gap - has_center_lane(road) * lane_width_m(road)
 
 
 # ------------------------------------------------------------------ smoothing

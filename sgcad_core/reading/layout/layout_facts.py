@@ -13,6 +13,7 @@ from typing import Literal
 from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP, T
 from sgcad_core.reading.junctions.junction import JunctionFacts
 from sgcad_core.reading.layout.answered_layout import answered_layout
+from sgcad_core.reading.layout.joining_roads import across_drive, drive_heading, ramp_alone
 from sgcad_core.reading.layout.lanes_used import lanes_added, least_lanes, with_told_lanes
 from sgcad_core.reading.layout.layout_places import (
     circle_lanes,
@@ -90,6 +91,8 @@ class _Builder:
     def _roads_alone(self) -> RoadLayout:
         main, cross = self._two_roads()
         junction = self.facts.junction
+        if junction.kind in ("none", RAMP) and (ramp := ramp_alone(self.facts)):
+            return RoadLayout(legs=ramp)
         if junction.kind == "none":
             return RoadLayout(legs=self._plain(main))
         if junction.kind == PARKING_LOT:
@@ -112,6 +115,7 @@ class _Builder:
         """The main road and the one that crosses it, told or made up at a right angle."""
         streets = [r for r in self.facts.streets if r.axis]
         main = self._main(streets) if streets else RoadFact(self._lead_axis(), "road", LaneFacts(), ())
+        main = across_drive(main, streets, drive_heading(self.facts))
         axis = main.axis or "N"
         others = [r for r in streets if r.axis != axis]
         cross = next((r for r in others if r.vehicles), others[0] if others else None)
@@ -205,7 +209,9 @@ class _Builder:
 
     def _stem(self, main: RoadFact) -> Compass:
         """The side leg's bearing, never on the main road unless the story's cross road lies there."""
-        stem = self.facts.junction.stem or turned(self._main_flow(main), 90)
+        comes, stem = drive_heading(self.facts), self.facts.junction.stem or turned(self._main_flow(main), 90)
+        if comes and axis_of(stem) == main.axis != axis_of(comes):
+            return turned(comes, 180)
         if axis_of(stem) == main.axis and self.facts.junction.kind != T:
             return turned(self._main_flow(main), 90)
         return stem
