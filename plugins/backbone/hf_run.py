@@ -239,7 +239,7 @@ def start_model(
     from plugins.backbone.engine.families import family_of
     from plugins.backbone.engine.faults import EngineFault
     from plugins.backbone.engine.grammar import GrammarCompiler
-    from plugins.backbone.engine.loop import Engine
+    from plugins.backbone.engine.loop import engine_of
     from plugins.backbone.hf_load import load
     from plugins.backbone.hf_prompt import Prompter, check_diagram
 
@@ -254,7 +254,7 @@ def start_model(
     eos = end_tokens(loaded.model.generation_config, loaded.tokenizer)
     vocabulary = int(loaded.model.get_output_embeddings().weight.shape[0])
     maker = GrammarCompiler(loaded.tokenizer, vocabulary, sorted(eos))
-    engine = Engine(loaded.model, family, apart, reports_at_once, prefix_bytes, watched=bool(loaded.evidence_heads))
+    engine = engine_of(loaded.model, family, apart, reports_at_once, prefix_bytes, watched=bool(loaded.evidence_heads))
     return RunningModel(engine, prompter, maker, frozenset(eos), name, loaded.evidence_heads)
 
 

@@ -265,7 +265,7 @@ def test_nan_logits_stop_the_report_with_the_step_and_not_the_others(tmp_path: P
     good = backbone.generate(folders.context(1, 0), query, Cad())
     poison = backbone._loaded().prompter.tokenizer.convert_tokens_to_ids("Z")
     with torch.no_grad():
-        backbone._loaded().engine.model.get_input_embeddings().weight[poison] = float("nan")
+        backbone._loaded().engine.runner.model.get_input_embeddings().weight[poison] = float("nan")
     with ThreadPoolExecutor(4) as pool:
         futures = [
             pool.submit(backbone.generate, Context(narrative=text), query, Cad())
@@ -330,7 +330,7 @@ def test_native_is_the_dtype_that_the_device_multiplies_in(
     backbone = HfVision(model=folder, device="cpu", dtype="native", max_new_tokens=200)
     found = backbone.generate(folders.context(), QUERY, Greedy())
     valid(found)
-    assert backbone._loaded().engine.model.dtype == dtype
+    assert backbone._loaded().engine.runner.model.dtype == dtype
     assert f"computed in {str(dtype).removeprefix('torch.')}" in found.notes
 
 
@@ -343,7 +343,7 @@ def test_backbones_of_one_model_share_it_and_the_last_one_frees_it(tmp_path: Pat
     engine = first._loaded().engine
     assert engine is second._loaded().engine
     assert engine is not other._loaded().engine
-    weights, thread = weakref.ref(engine.model), engine.thread
+    weights, thread = weakref.ref(engine.runner.model), engine.thread
     assert thread is not None
     del first, engine, backbone
     gc.collect()
