@@ -9,19 +9,17 @@ from __future__ import annotations
 import hashlib
 import re
 import threading
-from collections import OrderedDict
 from pathlib import Path
 from typing import ClassVar, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
 from plugins.backbone import hf_gguf, hf_machine, hf_run
-from plugins.backbone.prompt import Parts, parts, subject, with_previous
+from plugins.backbone.prompt import EarlierAnswers, Parts, parts, subject, with_previous
 from sgcad_core import settings
 from sgcad_core.case.records import Context, Generation, Query
 from sgcad_core.interfaces import Backbone, Decoder
 
-_KEPT_ANSWERS = 256
 _WHOLE_BYTES = 1 << 24
 """Files up to this size are read whole for the fingerprint; of larger ones this many bytes of either end."""
 BYTES = {"float32": 4.0, "bfloat16": 2.0, "float16": 2.0, "native": 2.0, "auto": 2.0}
@@ -66,7 +64,7 @@ class HfVision(Backbone):
     _lock: threading.Lock = PrivateAttr(default_factory=threading.Lock)
     _running: hf_run.RunningModel | None = PrivateAttr(default=None)
     _stamp: str | None = PrivateAttr(default=None)
-    _answers: OrderedDict[str, tuple[str, tuple[int, ...]]] = PrivateAttr(default_factory=OrderedDict)
+    _answers: EarlierAnswers = PrivateAttr(default_factory=EarlierAnswers)
 
     @property
     def stamp(self) -> str:
@@ -105,8 +103,7 @@ class HfVision(Backbone):
         """
         running = self._loaded()
         about = subject(context, query)
-        with self._lock:
-            before, ids = self._answers.get(about, ("", ())) if query.attempt > 1 or query.repair else ("", ())
+        before, ids = self._answers.before(about, query)
         prior = self._contrasted(context, query, decoder)
         call = hf_run.Call(
             with_context=with_previous(parts(context, query), before),
@@ -120,10 +117,7 @@ class HfVision(Backbone):
             views=self.views,
         )
         generation, ids = running.answer(call)
-        with self._lock:
-            self._answers[about] = generation.text, ids
-            if len(self._answers) > _KEPT_ANSWERS:
-                self._answers.popitem(last=False)
+        self._answers.note(about, generation.text, ids)
         return generation
 
     def _contrasted(self, context: Context, query: Query, decoder: Decoder) -> Parts | None:
