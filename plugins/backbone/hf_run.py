@@ -240,10 +240,11 @@ def start_model(
     from plugins.backbone.engine.faults import EngineFault
     from plugins.backbone.engine.grammar import GrammarCompiler
     from plugins.backbone.engine.loop import engine_of
-    from plugins.backbone.hf_load import load
+    from plugins.backbone.hf_load import check_outputs, load
     from plugins.backbone.hf_prompt import Prompter, check_diagram
 
     loaded = load(name, revision, settings, device, quantization, adapter)
+    check_outputs(name, loaded.model, loaded.tokenizer)
     try:
         family = family_of(loaded.model)
         prompter = Prompter(loaded, family, pictures_first)

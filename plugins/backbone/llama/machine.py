@@ -1,7 +1,7 @@
 """What this machine has and lacks for a GGUF file: the package, the file, memory, and the seconds to expect.
 
-Times are estimates from two short measurements: a token reads all weights once, a prompt computes two operations a
-parameter and token. Loads no weights.
+Times are estimates from two short measurements: a row's token reads all weights once, a prompt computes two operations
+a parameter and token. Loads no weights.
 """
 
 from __future__ import annotations
@@ -25,8 +25,9 @@ _PACKED = re.compile(r"(?<![A-Za-z])(BF16|F16|Q[2-8])(?![0-9])", re.IGNORECASE)
 _BILLIONS = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[bB](?![a-zA-Z])")
 _PROMPT, _ANSWER = 3000, 300
 """Tokens of a question and an answer that the expectation is told for."""
-_CUT = 0.5
-"""Share of the rate of plain matrix products that packed weights reach."""
+_PRODUCTS, _READING = 0.7, 0.25
+"""Shares of the rates of plain matrix products and of plain reading that packed weights reach, for prompts and for answers:
+fitted on one model (SmolLM2-135M, Q4_1, one thread), so an order of magnitude for others."""
 
 
 def lacks(model: str) -> tuple[str, ...]:
@@ -60,13 +61,13 @@ def expectation(model: str, window: int, reports: int, rows: int, gpu_layers: in
     if gpu_layers:
         return (*lines, "backbone: seconds are not estimated for layers on a graphics card")
     read, computed = _measured()
-    token = found.size / read + 2 * rows * found.parameters / computed
+    token = rows * found.size / read
     prompt = 2 * _PROMPT * found.parameters / computed
     lines.append(
         f"backbone: expected: about {_rounded(prompt)} s for a prompt of {_PROMPT} tokens and {_rounded(token * _ANSWER)} s "
-        f"for {_ANSWER} tokens of answer in {'two rows' if rows > 1 else 'one row'}, at the measured {read / 1e9:.0f} GB/s "
-        f"and {computed / 1e9:.0f} GFLOP/s of {len(os.sched_getaffinity(0))} processors; kept beginnings and forced tokens "
-        "cost less"
+        f"for {_ANSWER} tokens of answer in {'two rows' if rows > 1 else 'one row'}, at {read / 1e9:.2g} GB/s of "
+        f"weights and {computed / 1e9:.2g} GFLOP/s by a measurement just now, with {len(os.sched_getaffinity(0))} processors; "
+        "kept beginnings and forced tokens cost less"
     )
     return tuple(lines)
 
@@ -83,12 +84,12 @@ def _window(found: header.Header, window: int) -> int:
 
 
 def _measured() -> tuple[float, float]:
-    """Bytes a second that a sum over memory reads, and operations a second of packed products (half of plain ones)."""
+    """Bytes of packed weights that are read a second, and operations a second of packed products."""
     large = np.ones(1 << 25, np.float32)
     left = np.ones((768, 768), np.float32)
-    read = large.nbytes / _best(lambda: large.sum())
-    computed = 2 * 768**3 / _best(lambda: left @ left)
-    return read, _CUT * computed
+    read = _READING * large.nbytes / _best(lambda: large.sum())
+    computed = _PRODUCTS * 2 * 768**3 / _best(lambda: left @ left)
+    return read, computed
 
 
 def _best(work: Callable[[], object]) -> float:

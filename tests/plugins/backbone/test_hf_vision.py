@@ -388,3 +388,33 @@ def test_tokens_at_which_both_rows_disagree_are_kept_with_their_fields(backbones
     assert {c.winner for c in kept} <= {"evidence", "prior", "neither"}
     assert kept
     assert backbones["text_only"].generate(folders.context(), QUERY, Greedy()).conflicts == ()
+
+
+# ------------------------------------------------------------------ a tokenizer that is larger than the model
+def with_tokens(folder: Path, texts: list[str], special: bool) -> Path:
+    """The folder with further tokens in its tokenizer, behind the model's outputs."""
+    from tokenizers import AddedToken
+
+    tokenizer = tiny.tokenizer()
+    tokenizer.add_tokens([AddedToken(f"<fill{i}>", special=True) for i in range(tiny.VOCABULARY - len(tokenizer))])
+    tokenizer.add_tokens([AddedToken(text, special=special, normalized=False) for text in texts])
+    tokenizer.save_pretrained(folder)
+    return folder
+
+
+def test_words_without_an_output_are_told_with_both_numbers(tmp_path: Path) -> None:
+    folder = with_tokens(folders.save("text_only", tmp_path), ["roundabout", "crosswalk"], special=False)
+    with pytest.raises(ConfigError, match=r"tokenizer has 302 tokens, the model 300 outputs: 2 tokens cannot be written"):
+        HfVision(model=str(folder), dtype="float32", device="cpu").load()
+
+
+def test_special_tokens_that_are_only_read_may_lie_behind_the_outputs(tmp_path: Path) -> None:
+    folder = with_tokens(folders.save("text_only", tmp_path), ["<|picture|>"], special=True)
+    with pytest.raises(ConfigError, match="301 tokens"):  # it has no embedding either
+        HfVision(model=str(folder), dtype="float32", device="cpu").load()
+    model, _ = tiny.build("mllama")  # eight embeddings more than outputs
+    assert model.get_input_embeddings().weight.shape[0] > model.get_output_embeddings().weight.shape[0]
+    folder = with_tokens(folders.save("mllama", tmp_path / "mllama", template=None), ["<|picture|>"], special=True)
+    backbone = HfVision(model=str(folder), dtype="float32", device="cpu", max_new_tokens=200)
+    found = backbone.generate(Context(narrative="V1 struck V2."), Query(task="Tell.", answer_schema=tiny.SCHEMA), Greedy())
+    assert list(json.loads(found.text)) == list(tiny.SCHEMA["properties"])
