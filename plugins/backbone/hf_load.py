@@ -18,7 +18,7 @@ import transformers as tf
 from PIL import Image
 from safetensors import SafetensorError, safe_open
 
-from plugins.backbone import hf_adapter
+from plugins.backbone import hf_adapter, hf_machine
 from plugins.backbone.engine.supported import refusal
 from sgcad_core import settings
 from sgcad_core.entry_points import catalogue
@@ -64,7 +64,11 @@ def load(
     prepare = _prepare(place, revision) if hasattr(config, "vision_config") else None
     if adapter:
         hf_adapter.folder_of(adapter)
+    if lines := hf_machine.packed_lacks(name, place, quantization):
+        raise MissingTool("; ".join(lines))
     kind = tf.AutoModelForImageTextToText if hasattr(config, "vision_config") else tf.AutoModelForCausalLM
+    if quantization == "fp8" and not options.get("device_map"):
+        options = {**options, "device_map": {"": _device(device)}}
     model = _model(kind, place, revision, _with_dtype(options, device), quantization)
     if adapter:
         model = hf_adapter.merged(model, adapter)
@@ -186,7 +190,11 @@ def _digest(file: Path) -> str:
 
 
 def _quantization(name: str) -> Any:
-    _need("bitsandbytes", "backbone.quantization")
+    """transformers' own configuration. Raises MissingTool for packages and cards that are not here."""
+    if lines := hf_machine.packing_lacks(name):
+        raise MissingTool("; ".join(lines))
+    if name == "fp8":
+        return tf.FineGrainedFP8Config()
     if name == "int8":
         return tf.BitsAndBytesConfig(load_in_8bit=True)
     return tf.BitsAndBytesConfig(load_in_4bit=True, bnb_4bit_compute_dtype=torch.bfloat16, bnb_4bit_quant_type="nf4")

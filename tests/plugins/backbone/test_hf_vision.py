@@ -312,7 +312,7 @@ def test_quantization_without_its_package_says_how_to_install_it(backbones: dict
     if importlib.util.find_spec("bitsandbytes"):
         pytest.skip("bitsandbytes is installed here")
     packed = HfVision(**{**backbones["llava"].model_dump(), "quantization": "int4"})
-    with pytest.raises(MissingTool, match=r"quantization needs the package 'bitsandbytes'.*sg-cadvlm\[gpu\]"):
+    with pytest.raises(MissingTool, match=r"the package bitsandbytes is not installed: pip install 'sg-cadvlm\[gpu\]'"):
         packed.generate(folders.context(), QUERY, Cad())
 
 
