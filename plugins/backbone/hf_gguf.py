@@ -1,8 +1,9 @@
 """Weights in one GGUF file: unpacked once into a folder of safetensors, which then loads like any other model.
 
 A file is named by its path, as `package:NAME/FILE` where an installed package brings it (nothing of the package is
-imported), or as `hub:OWNER/NAME/FILE` where `hf download` has fetched it. Unpacking takes the packages `gguf` and `accelerate`; its result is kept in the user's cache by the file's
-digest, so that only the first start pays for it. Knows no prompt and no decoder.
+imported), or as `hub:OWNER/NAME/FILE` where `hf download` has fetched it. Unpacking takes the packages `gguf` and
+`accelerate`; its result is kept in the user's cache by the file's digest, so that only the first start pays for it.
+Knows no prompt and no decoder.
 """
 
 from __future__ import annotations

@@ -91,14 +91,16 @@ def check_outputs(name: str, model: Any, tokenizer: Any) -> None:
     Special tokens that are only read, such as the picture's of Llama 3.2 Vision, may lie behind the outputs as long as
     they have an embedding.
     """
-    outputs, inputs = (int(part().weight.shape[0]) for part in (model.get_output_embeddings, model.get_input_embeddings))
+    outputs, inputs = (
+        int(part().weight.shape[0]) for part in (model.get_output_embeddings, model.get_input_embeddings)
+    )
     special = {token for token, one in tokenizer.added_tokens_decoder.items() if one.special and token < inputs}
     beyond = sorted(t for t in tokenizer.get_vocab().values() if t >= outputs and t not in special)
     if beyond:
         raise ConfigError(
-            f"backbone.model {name}: its tokenizer has {beyond[-1] + 1} tokens, the model {outputs} outputs: {len(beyond)} "
-            "tokens cannot be written; put the model's own tokenizer beside the weights, or give the model their outputs "
-            f"(resize_token_embeddings({beyond[-1] + 1})) and train them"
+            f"backbone.model {name}: its tokenizer has {beyond[-1] + 1} tokens, the model {outputs} outputs: "
+            f"{len(beyond)} tokens cannot be written; put the model's own tokenizer beside the weights, or give the model "
+            f"their outputs (resize_token_embeddings({beyond[-1] + 1})) and train them"
         )
 
 

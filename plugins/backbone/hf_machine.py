@@ -12,7 +12,6 @@ from plugins.backbone import hf_gguf
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
 
-
 PACKED = {
     "awq": ("gptqmodel", "accelerate"),
     "gptq": ("gptqmodel", "optimum"),
@@ -83,7 +82,7 @@ def stored_packing(place: str) -> str:
 def _packages(needed: Iterable[str]) -> list[str]:
     missing = [package for package in sorted(needed) if find_spec(package) is None]
     how = {package: f"pip install {package.replace('_', '-')}" for package in missing}
-    how |= {package: "pip install 'sg-cadvlm[gpu]'" for package in _IN_GPU}
+    how |= dict.fromkeys(_IN_GPU, "pip install 'sg-cadvlm[gpu]'")
     return [f"backbone: the package {package} is not installed: {how[package]}" for package in missing]
 
 

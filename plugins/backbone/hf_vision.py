@@ -31,9 +31,9 @@ _BILLIONS = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[bB](?![a-zA-Z])")
 class HfVision(Backbone):
     """Runs a local image-text model of transformers; it gives logits, so it works with every decoder.
 
-    revision is the version of a model named by its hub id. quantization packs plain weights (int8 and int4 by bitsandbytes,
-    fp8 on cards that compute in it) and stays none for weights stored packed (AWQ, GPTQ, FP8). attn_implementation is
-    transformers' own option, max_new_tokens is the limit of one answer.
+    revision is the version of a model named by its hub id. quantization packs plain weights (int8 and int4 by
+    bitsandbytes, fp8 on cards that compute in it) and stays none for weights stored packed (AWQ, GPTQ, FP8).
+    attn_implementation is transformers' own option, max_new_tokens is the limit of one answer.
     """
 
     gives_logits: ClassVar[bool] = True
@@ -88,9 +88,9 @@ class HfVision(Backbone):
             )
         if isinstance(given, dict) and "flash" in str(given.get("attn_implementation", "")):
             raise ValueError(
-                f"attn_implementation {given['attn_implementation']}: rows of one batch have lengths of their own, which "
-                "takes masks that flash attention 2 and 3 do not know; use sdpa, which takes torch's flash kernel where a "
-                "prompt is read from its beginning"
+                f"attn_implementation {given['attn_implementation']}: rows of one batch have lengths of their own, "
+                "which takes masks that flash attention 2 and 3 do not know; use sdpa, which takes torch's flash kernel "
+                "where a prompt is read from its beginning"
             )
         return given
 

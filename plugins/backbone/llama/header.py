@@ -1,7 +1,7 @@
 """The beginning of a GGUF file: its description and the sizes of its tensors, read without any package.
 
-Layout: "GGUF", version, counts of tensors and of described keys, the keys with typed values, the tensors' names and shapes
-(the format's specification in ggml's repository, docs/gguf.md). Reads no weights.
+Layout: "GGUF", version, counts of tensors and of described keys, the keys with typed values, the tensors' names and
+shapes (the format's specification in ggml's repository, docs/gguf.md). Reads no weights.
 """
 
 from __future__ import annotations
@@ -44,7 +44,10 @@ class Header:
         """Bytes of keys and values of one token in all layers, in 16 bits."""
         heads = max(1, self.number("attention.head_count", 1))
         width = self.number("embedding_length") // heads
-        layers, key_heads = self.number("block_count"), self.told.get(f"{self.architecture}.attention.head_count_kv", heads)
+        layers, key_heads = (
+            self.number("block_count"),
+            self.told.get(f"{self.architecture}.attention.head_count_kv", heads),
+        )
         total = sum(key_heads) if isinstance(key_heads, list) else int(key_heads) * layers
         sides = self.number("attention.key_length", width) + self.number("attention.value_length", width)
         return 2 * total * sides

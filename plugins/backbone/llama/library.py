@@ -76,8 +76,8 @@ class Model:
         self.end = weakref.finalize(self, self.api.llama_model_free, self.pointer)
         if kind := self._unfit():
             raise ConfigError(
-                f"backbone.model {file}: {kind}, whose memory cannot be cut back or shared; use a model that reads from "
-                "left to right by attention"
+                f"backbone.model {file}: {kind}, whose memory cannot be cut back or shared; use a model that reads "
+                "from left to right by attention"
             )
         self.vocab = self.api.llama_model_get_vocab(self.pointer)
         self.vocabulary = int(self.api.llama_vocab_n_tokens(self.vocab))

@@ -26,13 +26,15 @@ _BILLIONS = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[bB](?![a-zA-Z])")
 _PROMPT, _ANSWER = 3000, 300
 """Tokens of a question and an answer that the expectation is told for."""
 _PRODUCTS, _READING = 0.7, 0.25
-"""Shares of the rates of plain matrix products and of plain reading that packed weights reach, for prompts and for answers:
-fitted on one model (SmolLM2-135M, Q4_1, one thread), so an order of magnitude for others."""
+"""Shares of the rates of plain matrix products and of plain reading that packed weights reach, for prompts and for
+answers: fitted on one model (SmolLM2-135M, Q4_1, one thread), so an order of magnitude for others."""
 
 
 def lacks(model: str) -> tuple[str, ...]:
     """What has to be installed or fetched before a file runs here, a line each. Raises ConfigError for no GGUF file."""
-    lines = [] if library.installed() else [f"backbone: the package llama-cpp-python is not installed: {library.REMEDY}"]
+    lines = (
+        [] if library.installed() else [f"backbone: the package llama-cpp-python is not installed: {library.REMEDY}"]
+    )
     try:
         file = hf_gguf.file_of(model)
     except (MissingTool, ConfigError) as fault:
@@ -63,11 +65,12 @@ def expectation(model: str, window: int, reports: int, rows: int, gpu_layers: in
     read, computed = _measured()
     token = rows * found.size / read
     prompt = 2 * _PROMPT * found.parameters / computed
+    kind, processors = "two rows" if rows > 1 else "one row", len(os.sched_getaffinity(0))
     lines.append(
-        f"backbone: expected: about {_rounded(prompt)} s for a prompt of {_PROMPT} tokens and {_rounded(token * _ANSWER)} s "
-        f"for {_ANSWER} tokens of answer in {'two rows' if rows > 1 else 'one row'}, at {read / 1e9:.2g} GB/s of "
-        f"weights and {computed / 1e9:.2g} GFLOP/s by a measurement just now, with {len(os.sched_getaffinity(0))} processors; "
-        "kept beginnings and forced tokens cost less"
+        f"backbone: expected: about {_rounded(prompt)} s for a prompt of {_PROMPT} tokens and "
+        f"{_rounded(token * _ANSWER)} s for {_ANSWER} tokens of answer in {kind}, at {read / 1e9:.2g} GB/s of weights and "
+        f"{computed / 1e9:.2g} GFLOP/s by a measurement just now, with {processors} processors; kept beginnings and "
+        "forced tokens cost less"
     )
     return tuple(lines)
 

@@ -53,10 +53,17 @@ class Vllm(Speaker):
 
     def tops(self, prompt: Sequence[int], behind: Sequence[int], count: int, top: int) -> list[Top]:
         """One request: the last `count` - 1 tokens by prompt_logprobs, the next one by logprobs."""
+        return self.tops_of([prompt], behind, count, top)[0]
+
+    def tops_of(self, prompts: Sequence[Sequence[int]], behind: Sequence[int], count: int, top: int) -> list[list[Top]]:
+        """One request with a prompt for each row."""
         asked = {"max_tokens": 1, "logprobs": top, "return_tokens_as_token_ids": True}
         if count > 1:
             asked["prompt_logprobs"] = top
-        (choice,) = self._choices([[*prompt, *behind]], asked)
+        choices = self._choices([[*prompt, *behind] for prompt in prompts], asked)
+        return [self._told(choice, count, top) for choice in choices]
+
+    def _told(self, choice: Mapping[str, Any], count: int, top: int) -> list[Top]:
         places = (choice.get("prompt_logprobs") or [])[1 - count :] if count > 1 else []
         if len(places) != count - 1 or None in places:
             raise ConfigError(self._without("gave no prompt_logprobs"))

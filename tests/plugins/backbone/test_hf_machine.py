@@ -66,7 +66,9 @@ def test_weights_are_not_packed_twice_nor_by_a_method_that_was_never_tried(tmp_p
         HfVision(model=packed(tmp_path / "b", "vptq")).offers(Cad())
 
 
-@pytest.mark.parametrize(("there", "told"), [(None, "there is none here"), ((8, 0), "the one here has 8.0"), ((9, 0), "")])
+@pytest.mark.parametrize(
+    ("there", "told"), [(None, "there is none here"), ((8, 0), "the one here has 8.0"), ((9, 0), "")]
+)
 def test_fp8_names_the_card_that_it_needs(
     there: tuple[int, int] | None, told: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

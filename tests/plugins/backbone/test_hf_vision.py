@@ -404,7 +404,9 @@ def with_tokens(folder: Path, texts: list[str], special: bool) -> Path:
 
 def test_words_without_an_output_are_told_with_both_numbers(tmp_path: Path) -> None:
     folder = with_tokens(folders.save("text_only", tmp_path), ["roundabout", "crosswalk"], special=False)
-    with pytest.raises(ConfigError, match=r"tokenizer has 302 tokens, the model 300 outputs: 2 tokens cannot be written"):
+    with pytest.raises(
+        ConfigError, match=r"tokenizer has 302 tokens, the model 300 outputs: 2 tokens cannot be written"
+    ):
         HfVision(model=str(folder), dtype="float32", device="cpu").load()
 
 
@@ -416,5 +418,7 @@ def test_special_tokens_that_are_only_read_may_lie_behind_the_outputs(tmp_path: 
     assert model.get_input_embeddings().weight.shape[0] > model.get_output_embeddings().weight.shape[0]
     folder = with_tokens(folders.save("mllama", tmp_path / "mllama", template=None), ["<|picture|>"], special=True)
     backbone = HfVision(model=str(folder), dtype="float32", device="cpu", max_new_tokens=200)
-    found = backbone.generate(Context(narrative="V1 struck V2."), Query(task="Tell.", answer_schema=tiny.SCHEMA), Greedy())
+    found = backbone.generate(
+        Context(narrative="V1 struck V2."), Query(task="Tell.", answer_schema=tiny.SCHEMA), Greedy()
+    )
     assert list(json.loads(found.text)) == list(tiny.SCHEMA["properties"])

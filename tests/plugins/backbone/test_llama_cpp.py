@@ -1,4 +1,4 @@
-"""GGUF files by llama.cpp in process: the tokens of the same weights in transformers, and what is said where it cannot."""
+"""GGUF files by llama.cpp in process: the tokens of the same weights in transformers, and what cannot be."""
 
 from __future__ import annotations
 
@@ -169,7 +169,7 @@ def test_limits_and_decoders_are_told(both: tuple[LlamaCpp, HfVision], tmp_path:
         llama.generate(context(1), question(), Vcd())
     broken = tmp_path / "broken.gguf"
     broken.write_bytes(b"GGUF of nothing")
-    with pytest.raises(ConfigError, match="is no GGUF file that this llama.cpp loads"):
+    with pytest.raises(ConfigError, match=r"is no GGUF file that this llama\.cpp loads"):
         LlamaCpp(model=str(broken)).load()
 
 
@@ -230,7 +230,9 @@ def test_headers_cut_anywhere_are_told(both: tuple[LlamaCpp, HfVision], tmp_path
 def test_smollm2_writes_json_under_contrast_from_its_packed_file() -> None:
     llama = LlamaCpp(model=SMOL, threads=1, window=1024, max_new_tokens=120)
     told = Context(narrative="V1 was traveling south at 45 mph on a dry road and struck the left side of V2.")
-    found = llama.generate(told, Query(task="Tell the road as JSON.", answer_schema=tiny.SCHEMA), Cad(alpha=0.5, beta=0.1))
+    found = llama.generate(
+        told, Query(task="Tell the road as JSON.", answer_schema=tiny.SCHEMA), Cad(alpha=0.5, beta=0.1)
+    )
     assert list(json.loads(found.text)) == list(tiny.SCHEMA["properties"])
     assert json.loads(found.text)["speed"] == 45
     assert found.grounding["speed"] > 1.0, "the report made it likelier"
