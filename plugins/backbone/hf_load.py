@@ -99,8 +99,8 @@ def check_outputs(name: str, model: Any, tokenizer: Any) -> None:
     if beyond:
         raise ConfigError(
             f"backbone.model {name}: its tokenizer has {beyond[-1] + 1} tokens, the model {outputs} outputs: "
-            f"{len(beyond)} tokens cannot be written; put the model's own tokenizer beside the weights, or give the model "
-            f"their outputs (resize_token_embeddings({beyond[-1] + 1})) and train them"
+            f"{len(beyond)} tokens cannot be written; put the model's own tokenizer beside the weights, or give the "
+            f"model their outputs (resize_token_embeddings({beyond[-1] + 1})) and train them"
         )
 
 

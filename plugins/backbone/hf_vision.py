@@ -89,8 +89,8 @@ class HfVision(Backbone):
         if isinstance(given, dict) and "flash" in str(given.get("attn_implementation", "")):
             raise ValueError(
                 f"attn_implementation {given['attn_implementation']}: rows of one batch have lengths of their own, "
-                "which takes masks that flash attention 2 and 3 do not know; use sdpa, which takes torch's flash kernel "
-                "where a prompt is read from its beginning"
+                "which takes masks that flash attention 2 and 3 do not know; use sdpa, which takes torch's flash "
+                "kernel where a prompt is read from its beginning"
             )
         return given
 

@@ -65,12 +65,13 @@ def expectation(model: str, window: int, reports: int, rows: int, gpu_layers: in
     read, computed = _measured()
     token = rows * found.size / read
     prompt = 2 * _PROMPT * found.parameters / computed
-    kind, processors = "two rows" if rows > 1 else "one row", len(os.sched_getaffinity(0))
+    kind = "two rows" if rows > 1 else "one row"
+    processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     lines.append(
         f"backbone: expected: about {_rounded(prompt)} s for a prompt of {_PROMPT} tokens and "
-        f"{_rounded(token * _ANSWER)} s for {_ANSWER} tokens of answer in {kind}, at {read / 1e9:.2g} GB/s of weights and "
-        f"{computed / 1e9:.2g} GFLOP/s by a measurement just now, with {processors} processors; kept beginnings and "
-        "forced tokens cost less"
+        f"{_rounded(token * _ANSWER)} s for {_ANSWER} tokens of answer in {kind}, at {read / 1e9:.2g} GB/s of weights "
+        f"and {computed / 1e9:.2g} GFLOP/s by a measurement just now, with {processors} processors; kept beginnings "
+        "and forced tokens cost less"
     )
     return tuple(lines)
 
