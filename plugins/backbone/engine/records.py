@@ -111,12 +111,16 @@ class Rows(Protocol):
 
     calls: int
     """Forward passes so far."""
-    window: int
-    """Tokens of a prompt and its answer together."""
-    vocabulary: int
-    """Tokens that a row of logits tells."""
     states: dict[int, Any]
     """By id of a row that was stepped: the states of its tokens, where the loop watches them."""
+
+    @property
+    def window(self) -> int:
+        """Tokens of a prompt and its answer together."""
+
+    @property
+    def vocabulary(self) -> int:
+        """Tokens that a row of logits tells."""
 
     @property
     def computed_in(self) -> str:
