@@ -59,7 +59,8 @@ class OpenAIServer(Backbone):
     def _pictures_need_vllm(self) -> OpenAIServer:
         if self.pictures and self.protocol != "vllm":
             raise ValueError(
-                f"pictures: protocol {self.protocol} takes no tokens with pictures; set protocol vllm, or pictures false"
+                f"pictures: protocol {self.protocol} takes no tokens with pictures; set protocol vllm, or leave "
+                "pictures out"
             )
         return self
 

@@ -1,7 +1,7 @@
 """Pictures through a server: the server renders a conversation with its pictures into tokens and features, once.
 
-Every draft and every score sends both back with the tokens behind them, so token numbers are never spelled again and the
-contrast is as exact as with text. Diagrams go out as data URLs. Knows vLLM's content of messages; no weights.
+Every draft and every score sends both back with the tokens behind them, so token numbers are never spelled again and
+the contrast is as exact as with text. Diagrams go out as data URLs. Knows vLLM's content of messages; no weights.
 """
 
 from __future__ import annotations

@@ -2,7 +2,8 @@
 
 The server's limit of the top k is its option --max-logprobs (20 unless set, -1 the whole vocabulary). A request with
 prompt_logprobs does not read the server's prefix cache: it computes its prompt again. Pictures need the server's
-scale-out pages (VLLM_ENABLE_SCALE_OUT_ENDPOINTS=1), which render a chat into token ids with features and take both back.
+scale-out pages (VLLM_ENABLE_SCALE_OUT_ENDPOINTS=1), which render a chat into token ids with features and take both
+back.
 """
 
 from __future__ import annotations
