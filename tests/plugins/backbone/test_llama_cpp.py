@@ -194,6 +194,21 @@ def test_the_check_names_package_and_file_with_their_commands(monkeypatch: pytes
         library.api()
 
 
+def test_a_file_that_the_hub_has_fetched_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import huggingface_hub
+
+    from plugins.backbone import hf_gguf
+
+    file = tmp_path / "some-4B-Q4_K_M.gguf"
+    file.write_bytes(b"GGUF")
+    asked = []
+    monkeypatch.setattr(huggingface_hub, "try_to_load_from_cache", lambda *told: asked.append(told) or str(file))
+    assert hf_gguf.file_of("hub:someone/some-4B-GGUF/some-4B-Q4_K_M.gguf") == file
+    assert asked == [("someone/some-4B-GGUF", "some-4B-Q4_K_M.gguf")]
+    with pytest.raises(ConfigError, match=r"is no GGUF file: it does not begin|is no GGUF file: unpack"):
+        LlamaCpp(model="hub:someone/some-4B-GGUF/some-4B-Q4_K_M.gguf").offers(Cad())
+
+
 def test_memory_of_a_file_that_is_not_here_is_told_by_its_name() -> None:
     assert LlamaCpp(model="hub:o/n/Qwen3VL-4B-Instruct-Q4_K_M.gguf").weights_gb() == pytest.approx(4 * 0.62)
     assert LlamaCpp(model="hub:o/n/some-8B-Q8_0.gguf").weights_gb() == pytest.approx(8 * 1.07)
