@@ -18,7 +18,8 @@ import transformers as tf
 from PIL import Image
 from safetensors import SafetensorError, safe_open
 
-from plugins.backbone import hf_adapter, hf_machine
+from plugins.backbone import hf_adapter
+from plugins.backbone.engine import packing
 from plugins.backbone.engine.supported import refusal
 from sgcad_core import settings
 from sgcad_core.entry_points import catalogue
@@ -64,7 +65,7 @@ def load(
     prepare = _prepare(place, revision) if hasattr(config, "vision_config") else None
     if adapter:
         hf_adapter.folder_of(adapter)
-    if lines := hf_machine.packed_lacks(name, place, quantization):
+    if lines := packing.stored_lacks(name, place, quantization):
         raise MissingTool("; ".join(lines))
     kind = tf.AutoModelForImageTextToText if hasattr(config, "vision_config") else tf.AutoModelForCausalLM
     if quantization == "fp8" and not options.get("device_map"):
@@ -193,7 +194,7 @@ def _digest(file: Path) -> str:
 
 def _quantization(name: str) -> Any:
     """transformers' own configuration. Raises MissingTool for packages and cards that are not here."""
-    if lines := hf_machine.packing_lacks(name):
+    if lines := packing.lacks(name):
         raise MissingTool("; ".join(lines))
     if name == "fp8":
         return tf.FineGrainedFP8Config()

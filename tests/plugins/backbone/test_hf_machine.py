@@ -10,6 +10,7 @@ import torch
 from pydantic import ValidationError
 
 from plugins.backbone import hf_machine
+from plugins.backbone.engine import packing
 from plugins.backbone.hf_vision import HfVision
 from plugins.decoder.cad import Cad
 from research.benchmarks.decoding.family_models import FAMILIES, save
@@ -28,7 +29,7 @@ def test_weights_that_are_not_here_are_told_with_the_command() -> None:
 
 
 def test_packages_that_are_missing_are_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(hf_machine, "find_spec", lambda _: None)
+    monkeypatch.setattr(packing, "find_spec", lambda _: None)
     folder = str(folders.save("text_only", tmp_path))
     found = hf_machine.lacks(folder, None, "auto", "int4")
     assert [line.split(" is not")[0] for line in found] == [
@@ -52,7 +53,7 @@ def packed(folder: Path, method: str) -> str:
 def test_packages_of_packed_weights_are_told_before_they_load(
     method: str, missing: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(hf_machine, "find_spec", lambda _: None)
+    monkeypatch.setattr(packing, "find_spec", lambda _: None)
     folder = packed(tmp_path, method)
     assert any(missing in line for line in HfVision(model=folder).offers(Cad()))
     with pytest.raises(MissingTool, match="is not installed: pip install"):
