@@ -1,7 +1,7 @@
 """Rows in llama.cpp: the token loop's `Rows`, with kept beginnings as sequences that share their cells.
 
-A row is a sequence of the library's memory; a kept beginning is a sequence that is not written to. Where the memory is full
-the oldest kept one goes first. Knows no decoder and no grammar.
+A row is a sequence of the library's memory; a kept beginning is a sequence that is not written to. Where the memory is
+full the oldest kept one goes first. Knows no decoder and no grammar.
 """
 
 from __future__ import annotations
