@@ -100,7 +100,9 @@ def memory_warning(config: Config, there: dict[str, Any] | None = None) -> str:
     need = config.backbone.weights_gb() if config.backbone else None
     if need is None:
         return ""
-    gb, where = memory_for(there or machine.hardware(), str(getattr(config.backbone, "device", "auto")))
+    on_cards = getattr(config.backbone, "gpu_layers", -1) != 0
+    device = str(getattr(config.backbone, "device", "auto" if on_cards else "cpu"))
+    gb, where = memory_for(there or machine.hardware(), device)
     if need * MEMORY_MARGIN <= gb:
         return ""
     return (
@@ -120,7 +122,7 @@ def memory_for(there: dict[str, Any], device: str) -> tuple[float, str]:
 
 
 def _remedy(config: Config) -> str:
-    if getattr(config.backbone, "quantization", "none") == "none":
+    if getattr(config.backbone, "quantization", "") == "none":
         return "; try --set backbone.quantization=int4, a smaller model, or a server (openai.yaml)"
     return "; choose a smaller model, or a server (openai.yaml)"
 

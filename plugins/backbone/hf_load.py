@@ -19,6 +19,7 @@ from PIL import Image
 from safetensors import SafetensorError, safe_open
 
 from plugins.backbone import hf_adapter
+from plugins.backbone.engine import packing
 from plugins.backbone.engine.supported import refusal
 from sgcad_core import settings
 from sgcad_core.entry_points import catalogue
@@ -64,7 +65,11 @@ def load(
     prepare = _prepare(place, revision) if hasattr(config, "vision_config") else None
     if adapter:
         hf_adapter.folder_of(adapter)
+    if lines := packing.stored_lacks(name, place, quantization):
+        raise MissingTool("; ".join(lines))
     kind = tf.AutoModelForImageTextToText if hasattr(config, "vision_config") else tf.AutoModelForCausalLM
+    if quantization == "fp8" and not options.get("device_map"):
+        options = {**options, "device_map": {"": _device(device)}}
     model = _model(kind, place, revision, _with_dtype(options, device), quantization)
     if adapter:
         model = hf_adapter.merged(model, adapter)
@@ -79,6 +84,25 @@ def load_tokenizer(name: str, field: str) -> tuple[Any, str | None]:
     place = _place(name)
     tokenizer = _tokenizer(place, None, field)
     return tokenizer, _template(tokenizer, place, None)
+
+
+def check_outputs(name: str, model: Any, tokenizer: Any) -> None:
+    """Raises ConfigError if an answer may need a token that the model has no output for.
+
+    Special tokens that are only read, such as the picture's of Llama 3.2 Vision, may lie behind the outputs as long as
+    they have an embedding.
+    """
+    outputs, inputs = (
+        int(part().weight.shape[0]) for part in (model.get_output_embeddings, model.get_input_embeddings)
+    )
+    special = {token for token, one in tokenizer.added_tokens_decoder.items() if one.special and token < inputs}
+    beyond = sorted(t for t in tokenizer.get_vocab().values() if t >= outputs and t not in special)
+    if beyond:
+        raise ConfigError(
+            f"backbone.model {name}: its tokenizer has {beyond[-1] + 1} tokens, the model {outputs} outputs: "
+            f"{len(beyond)} tokens cannot be written; put the model's own tokenizer beside the weights, or give the "
+            f"model their outputs (resize_token_embeddings({beyond[-1] + 1})) and train them"
+        )
 
 
 def _with_dtype(options: Mapping[str, Any], device: str) -> dict[str, Any]:
@@ -169,7 +193,11 @@ def _digest(file: Path) -> str:
 
 
 def _quantization(name: str) -> Any:
-    _need("bitsandbytes", "backbone.quantization")
+    """transformers' own configuration. Raises MissingTool for packages and cards that are not here."""
+    if lines := packing.lacks(name):
+        raise MissingTool("; ".join(lines))
+    if name == "fp8":
+        return tf.FineGrainedFP8Config()
     if name == "int8":
         return tf.BitsAndBytesConfig(load_in_8bit=True)
     return tf.BitsAndBytesConfig(load_in_4bit=True, bnb_4bit_compute_dtype=torch.bfloat16, bnb_4bit_quant_type="nf4")

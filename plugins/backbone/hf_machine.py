@@ -1,12 +1,12 @@
-"""What this machine lacks for a model of transformers: files, packages, a family that runs. Loads no weights."""
+"""What this machine lacks for a model of transformers: files, packages, cards, a family that runs. Loads no weights."""
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from plugins.backbone import hf_gguf
+from plugins.backbone.engine import packing
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
 
@@ -16,16 +16,16 @@ def lacks(model: str, revision: str | None, device_map: Any, quantization: str) 
 
     Raises ConfigError for a family that cannot run, where its config.json is at hand.
     """
-    wanted = {"accelerate": bool(device_map), "bitsandbytes": quantization != "none"}
-    missing = [package for package, asked in wanted.items() if asked and find_spec(package) is None]
-    lines = [f"backbone: the package {package} is not installed: pip install 'sg-cadvlm[gpu]'" for package in missing]
+    lines = [*packing.lacks(quantization)]
+    if device_map and quantization == "none":
+        lines += packing.packages(["accelerate"])
     if hf_gguf.is_gguf(model):
         return (*lines, *_file(model))
     place = _place(model, revision)
     if place is None:
         return (*lines, f"backbone: the weights of {model} are not on this machine: hf download {model}")
     _refused(model, place)
-    return tuple(lines)
+    return (*lines, *packing.stored_lacks(model, str(place), quantization))
 
 
 def _file(model: str) -> tuple[str, ...]:

@@ -78,12 +78,16 @@ class Prompter:
             )
         return Prompt(self._expanded(ids, pictures), pictures)
 
+    def turn(self, blocks: list[str | None], pictures: list[Picture]) -> list[int]:
+        """Token ids of one user's turn whose pictures (None among the blocks) are prepared."""
+        return self._expanded(self._ids(self._rendered([("user", blocks)])), pictures)
+
     # ------------------------------------------------------------------ text
     def spelled(self, parts: Parts, pictures: int) -> list[int]:
         """Token ids with one placeholder for each picture."""
         return self._ids(self._templated(parts, pictures) if self.loaded.template else self._plain(parts, pictures))
 
-    def _blocks(self, parts: Parts, pictures: int) -> list[str | None]:
+    def blocks(self, parts: Parts, pictures: int) -> list[str | None]:
         """Texts and, as None, pictures in the prompt's order; a gap behind every text but the last."""
         shared = [parts.task, *map(self._defused, parts.passages)]
         narrative: list[str | None] = [self._defused(parts.narrative)] if parts.narrative else []
@@ -99,14 +103,14 @@ class Prompter:
     def _templated(self, parts: Parts, pictures: int) -> str:
         if parts.previous and (text := self._in_turns(parts, pictures)):
             return text
-        return self._rendered([("user", self._blocks(parts, pictures))])
+        return self._rendered([("user", self.blocks(parts, pictures))])
 
     def _in_turns(self, parts: Parts, pictures: int) -> str | None:
         """The first question, its answer, then the findings: everything up to them was read before.
 
         None where the template does not keep the first question as it was (the embedded model's, for one).
         """
-        asked: Turn = ("user", self._blocks(replace(parts, repair=""), pictures))
+        asked: Turn = ("user", self.blocks(replace(parts, repair=""), pictures))
         findings = self._defused(parts.repair.replace(parts.previous, "(the answer above)", 1))
         first = self._rendered([asked])
         whole = self._rendered([asked, ("assistant", [self._defused(parts.previous)]), ("user", [findings])])
@@ -135,7 +139,7 @@ class Prompter:
         return "".join(self.shown_text or "" if block is None else block for block in blocks)
 
     def _plain(self, parts: Parts, pictures: int) -> str:
-        return f"{self._joined(self._blocks(parts, pictures)).rstrip()}{_GAP}Answer:\n"
+        return f"{self._joined(self.blocks(parts, pictures)).rstrip()}{_GAP}Answer:\n"
 
     def _defused(self, text: str) -> str:
         """The text with a space in every special token."""

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from plugins.backbone.engine.grammar import Grammar, GrammarCompiler
     from plugins.backbone.engine.records import Answer, Loop, Policy, Prompt
     from plugins.backbone.hf_prompt import Prompter
+    from plugins.backbone.server.pictures import ShownPrompts
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class RunningModel:
     """One model with its token loop, its prompt writer and its grammar compiler."""
 
     engine: Loop
-    prompter: Prompter
+    prompter: Prompter | ShownPrompts
     maker: GrammarCompiler
     eos: frozenset[int]
     name: str
@@ -239,11 +240,12 @@ def start_model(
     from plugins.backbone.engine.families import family_of
     from plugins.backbone.engine.faults import EngineFault
     from plugins.backbone.engine.grammar import GrammarCompiler
-    from plugins.backbone.engine.loop import Engine
-    from plugins.backbone.hf_load import load
+    from plugins.backbone.engine.loop import engine_of
+    from plugins.backbone.hf_load import check_outputs, load
     from plugins.backbone.hf_prompt import Prompter, check_diagram
 
     loaded = load(name, revision, settings, device, quantization, adapter)
+    check_outputs(name, loaded.model, loaded.tokenizer)
     try:
         family = family_of(loaded.model)
         prompter = Prompter(loaded, family, pictures_first)
@@ -254,7 +256,7 @@ def start_model(
     eos = end_tokens(loaded.model.generation_config, loaded.tokenizer)
     vocabulary = int(loaded.model.get_output_embeddings().weight.shape[0])
     maker = GrammarCompiler(loaded.tokenizer, vocabulary, sorted(eos))
-    engine = Engine(loaded.model, family, apart, reports_at_once, prefix_bytes, watched=bool(loaded.evidence_heads))
+    engine = engine_of(loaded.model, family, apart, reports_at_once, prefix_bytes, watched=bool(loaded.evidence_heads))
     return RunningModel(engine, prompter, maker, frozenset(eos), name, loaded.evidence_heads)
 
 

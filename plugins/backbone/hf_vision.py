@@ -9,23 +9,21 @@ from __future__ import annotations
 import hashlib
 import re
 import threading
-from collections import OrderedDict
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
 from plugins.backbone import hf_gguf, hf_machine, hf_run
-from plugins.backbone.prompt import Parts, parts, subject, with_previous
+from plugins.backbone.prompt import EarlierAnswers, Parts, parts, subject, with_previous
 from sgcad_core import settings
 from sgcad_core.case.records import Context, Generation, Query
 from sgcad_core.interfaces import Backbone, Decoder
 
-_KEPT_ANSWERS = 256
 _WHOLE_BYTES = 1 << 24
 """Files up to this size are read whole for the fingerprint; of larger ones this many bytes of either end."""
 BYTES = {"float32": 4.0, "bfloat16": 2.0, "float16": 2.0, "native": 2.0, "auto": 2.0}
-QUANTIZED = {"int8": 1.1, "int4": 0.62}
+QUANTIZED = {"int8": 1.1, "int4": 0.62, "fp8": 1.1}
 """Bytes a parameter; what is kept in 16 bits (embeddings, norms, the vision tower) adds to a byte and a half byte."""
 _BILLIONS = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[bB](?![a-zA-Z])")
 
@@ -33,8 +31,9 @@ _BILLIONS = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[bB](?![a-zA-Z])")
 class HfVision(Backbone):
     """Runs a local image-text model of transformers; it gives logits, so it works with every decoder.
 
-    revision is the version of a model named by its hub id. quantization needs bitsandbytes, attn_implementation is
-    transformers' own option, max_new_tokens is the limit of one answer.
+    revision is the version of a model named by its hub id. quantization packs plain weights (int8 and int4 by
+    bitsandbytes, fp8 on cards that compute in it) and stays none for weights stored packed (AWQ, GPTQ, FP8).
+    attn_implementation is transformers' own option, max_new_tokens is the limit of one answer.
     """
 
     gives_logits: ClassVar[bool] = True
@@ -51,7 +50,7 @@ class HfVision(Backbone):
     dtype: Literal["auto", "native", "float32", "bfloat16", "float16"] = Field(
         "auto", description="auto: as stored; native: bfloat16 where the device has instructions for it, else float32"
     )
-    quantization: Literal["none", "int8", "int4"] = "none"
+    quantization: Literal["none", "int8", "int4", "fp8"] = "none"
     attn_implementation: Literal["sdpa", "eager"] = "sdpa"
     max_new_tokens: int = Field(2048, ge=1)
     reports_at_once: int = Field(8, ge=1, le=256, description="reports in one batch; halved when memory runs out")
@@ -66,7 +65,7 @@ class HfVision(Backbone):
     _lock: threading.Lock = PrivateAttr(default_factory=threading.Lock)
     _running: hf_run.RunningModel | None = PrivateAttr(default=None)
     _stamp: str | None = PrivateAttr(default=None)
-    _answers: OrderedDict[str, tuple[str, tuple[int, ...]]] = PrivateAttr(default_factory=OrderedDict)
+    _answers: EarlierAnswers = PrivateAttr(default_factory=EarlierAnswers)
 
     @property
     def stamp(self) -> str:
@@ -76,6 +75,24 @@ class HfVision(Backbone):
                 own = hf_gguf.digest(self.model) if hf_gguf.is_gguf(self.model) else folder_stamp(self.model)
                 self._stamp = f"{own}+{folder_stamp(self.adapter)}" if self.adapter else own
             return self._stamp
+
+    @model_validator(mode="before")
+    @classmethod
+    def _only_what_the_loop_can(cls, given: Any) -> Any:
+        """Names the reason where transformers has a setting that the token loop cannot follow."""
+        if isinstance(given, dict) and "tp_plan" in given:
+            raise ValueError(
+                "tp_plan: transformers' tensor parallelism is one process a card, the token loop is one process; use "
+                "device_map auto (layers over cards), a worker for each group of cards (docs/scale.md), or a server "
+                "that splits tensors (vLLM --tensor-parallel-size) by backbone openai_server"
+            )
+        if isinstance(given, dict) and "flash" in str(given.get("attn_implementation", "")):
+            raise ValueError(
+                f"attn_implementation {given['attn_implementation']}: rows of one batch have lengths of their own, "
+                "which takes masks that flash attention 2 and 3 do not know; use sdpa, which takes torch's flash "
+                "kernel where a prompt is read from its beginning"
+            )
+        return given
 
     @model_validator(mode="after")
     def _adapter_needs_plain_weights(self) -> HfVision:
@@ -105,8 +122,7 @@ class HfVision(Backbone):
         """
         running = self._loaded()
         about = subject(context, query)
-        with self._lock:
-            before, ids = self._answers.get(about, ("", ())) if query.attempt > 1 or query.repair else ("", ())
+        before, ids = self._answers.before(about, query)
         prior = self._contrasted(context, query, decoder)
         call = hf_run.Call(
             with_context=with_previous(parts(context, query), before),
@@ -120,10 +136,7 @@ class HfVision(Backbone):
             views=self.views,
         )
         generation, ids = running.answer(call)
-        with self._lock:
-            self._answers[about] = generation.text, ids
-            if len(self._answers) > _KEPT_ANSWERS:
-                self._answers.popitem(last=False)
+        self._answers.note(about, generation.text, ids)
         return generation
 
     def _contrasted(self, context: Context, query: Query, decoder: Decoder) -> Parts | None:

@@ -1,8 +1,8 @@
 """A model behind vLLM, SGLang or llama.cpp's server, with every decoder: contrast by draft and verify.
 
 The server writes, both rows score what it wrote, and the decoder here decides every token (`server/verify.py`).
-Prompts and grammar are made with the model's own tokenizer, which must be at hand. Pictures are not sent. Knows no
-weights.
+Prompts and grammar are made with the model's own tokenizer, which must be at hand. Pictures are sent on demand, as data
+URLs (`server/pictures.py`). Knows no weights.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import threading
 from typing import ClassVar, Literal
 
-from pydantic import Field, PrivateAttr
+from pydantic import Field, PrivateAttr, model_validator
 
 from plugins.backbone import hf_run
 from plugins.backbone.prompt import Parts, parts
@@ -43,6 +43,9 @@ class OpenAIServer(Backbone):
         None, ge=1, description="and at most, where these do not decide; null: the server's limit"
     )
     draft_tokens: int = Field(128, ge=1, le=4096, description="longest draft between two checks")
+    pictures: bool = Field(
+        False, description="send diagrams; vLLM only, started with VLLM_ENABLE_SCALE_OUT_ENDPOINTS=1"
+    )
     truncate: bool = Field(False, description="cut a narrative that does not fit in the model's window")
     always_ground: bool = Field(False, description="score the row without context for decoders that do not need it too")
     timeout_s: float = Field(300.0, gt=0)
@@ -51,6 +54,15 @@ class OpenAIServer(Backbone):
 
     _lock: threading.Lock = PrivateAttr(default_factory=threading.Lock)
     _running: hf_run.RunningModel | None = PrivateAttr(default=None)
+
+    @model_validator(mode="after")
+    def _pictures_need_vllm(self) -> OpenAIServer:
+        if self.pictures and self.protocol != "vllm":
+            raise ValueError(
+                f"pictures: protocol {self.protocol} takes no tokens with pictures; set protocol vllm, or leave "
+                "pictures out"
+            )
+        return self
 
     def load(self) -> None:
         """Asks the server what it has, and reads the tokenizer."""
@@ -91,10 +103,10 @@ class OpenAIServer(Backbone):
         if not (decoder.reads_prior() or self.always_ground):
             return None
         other = decoder.contrast_context(context)
-        if other is not None and other.narrative == context.narrative:
+        if other is not None and other.narrative == context.narrative and not self.pictures:
             raise ConfigError(
                 f"decoder {type(decoder).__name__} contrasts pictures, which backbone 'openai_server' does not send; "
-                "use decoder 'cad', or backbone 'hf_vision'"
+                "set backbone.pictures (vLLM), use decoder 'cad', or backbone 'hf_vision'"
             )
         return parts(other, query)
 
@@ -110,6 +122,7 @@ class OpenAIServer(Backbone):
                     self.tokenizer,
                     loop.Tops(self.top_logprobs, self.most_logprobs),
                     self.draft_tokens,
+                    self.pictures,
                 )
             return self._running
 

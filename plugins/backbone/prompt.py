@@ -7,9 +7,13 @@ tokenizer, no chat format and no model.
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, replace
+import threading
+from collections import OrderedDict
+from dataclasses import dataclass, field, replace
 
 from sgcad_core.case.records import Context, Diagram, Query
+
+_KEPT_ANSWERS = 256
 
 
 @dataclass(frozen=True)
@@ -55,3 +59,23 @@ def subject(context: Context, query: Query) -> str:
     for diagram in known.diagrams:
         found.update(hashlib.sha256(diagram.png).digest())
     return found.hexdigest()
+
+
+@dataclass
+class EarlierAnswers:
+    """The last answers by their subject: a repair goes on from its text, and its tokens are the draft of the next."""
+
+    kept: OrderedDict[str, tuple[str, tuple[int, ...]]] = field(default_factory=OrderedDict)
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def before(self, about: str, query: Query) -> tuple[str, tuple[int, ...]]:
+        """Text and tokens of the attempt before; empty for a first attempt."""
+        with self.lock:
+            return self.kept.get(about, ("", ())) if query.attempt > 1 or query.repair else ("", ())
+
+    def note(self, about: str, text: str, ids: tuple[int, ...]) -> None:
+        """Keeps an answer; forgets the oldest beyond a limit."""
+        with self.lock:
+            self.kept[about] = text, ids
+            if len(self.kept) > _KEPT_ANSWERS:
+                self.kept.popitem(last=False)

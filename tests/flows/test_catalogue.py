@@ -42,3 +42,10 @@ def test_two_large_cards_hold_what_a_laptop_does_not():
         == catalogue.memory_warning(load("template.yaml"), LAPTOP)
         == ""
     )
+
+
+def test_a_packed_file_is_weighed_with_its_keys_and_told_without_a_setting_that_it_has_not():
+    config = load("qwen3_vl_8b_gguf.yaml")
+    assert catalogue.memory_warning(config, LAPTOP) == ""
+    small = catalogue.memory_warning(config, {"gpus": CARDS["gpus"], "memory_gib": 4.0})
+    assert "the config asks for the processor, and 4 GB of memory; choose a smaller model" in small

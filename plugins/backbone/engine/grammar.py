@@ -167,7 +167,14 @@ def _token_table(tokenizer: Any, vocabulary: int, eos: list[int]) -> Any:
         return tokenizer
     from llguidance.hf import from_tokenizer
 
-    return from_tokenizer(tokenizer, n_vocab=vocabulary, eos_token=eos, slices=LLTokenizer.json_slices())
+    size = max(vocabulary, tokens_in(tokenizer))
+    known = [token for token in eos if token < tokens_in(tokenizer)]
+    return from_tokenizer(tokenizer, n_vocab=size, eos_token=known or eos, slices=LLTokenizer.json_slices())
+
+
+def tokens_in(tokenizer: Any) -> int:
+    """The number after a tokenizer's largest token id."""
+    return max(tokenizer.get_vocab().values(), default=-1) + 1
 
 
 def _subschemas(schema: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Mapping[str, Any]]]:

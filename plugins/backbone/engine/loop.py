@@ -20,33 +20,35 @@ import torch
 from plugins.backbone.engine.families import Family
 from plugins.backbone.engine.faults import BadLogits, EngineFault, TooBig, tried
 from plugins.backbone.engine.job import Job
-from plugins.backbone.engine.records import Answer, Request
+from plugins.backbone.engine.records import Answer, Request, Rows
 from plugins.backbone.engine.runner import Runner
 from plugins.backbone.engine.scoring import ScoredChunk, averaged, score_chunks
-from plugins.backbone.engine.supported import window_of
 
 _GUESSES = 64
 """Guessed tokens a step, shared by the reports in it: more would cost more than they save."""
 
 
+def engine_of(
+    model: Any,
+    family: Family,
+    apart: bool = False,
+    reports_at_once: int = 8,
+    prefix_bytes: int = 1 << 30,
+    watched: bool = False,
+) -> Engine:
+    """The token loop of a model of transformers. `watched`: answers keep the states that tokens were chosen from."""
+    rows = Runner(model, family, apart, prefix_bytes)
+    if watched:
+        rows.watch()
+    return Engine(rows, reports_at_once)
+
+
 class Engine:
     """The token loop of one model. Close it, or leave it: its thread is a daemon."""
 
-    def __init__(
-        self,
-        model: Any,
-        family: Family,
-        apart: bool = False,
-        reports_at_once: int = 8,
-        prefix_bytes: int = 1 << 30,
-        watched: bool = False,
-    ) -> None:
-        """`watched`: answers keep the states that their tokens were chosen from."""
-        self.model = model
-        self.runner = Runner(model, family, apart, prefix_bytes)
-        if watched:
-            self.runner.watch()
-        self.window = window_of(model)
+    def __init__(self, rows: Rows, reports_at_once: int = 8) -> None:
+        self.runner = rows
+        self.window = rows.window
         self.limit = reports_at_once
         self.jobs: list[Job] = []
         self.waiting: deque[Job] = deque()
@@ -60,7 +62,7 @@ class Engine:
     @property
     def computed_in(self) -> str:
         """Number type of the model's weights."""
-        return str(self.model.dtype).removeprefix("torch.")
+        return self.runner.computed_in
 
     def generate(self, request: Request) -> Answer:
         """Answers one request; blocks. Raises an EngineFault, or the exception of the decoder or the model."""
@@ -180,29 +182,26 @@ class Engine:
             without_context.append(next(logits) if job.request.without_context is not None else None)
             with_context.append(averaged(first, [next(logits) for _ in job.request.views]))
             job.answer.model_calls += self.runner.calls - before
-        found = score_chunks(jobs, with_context, without_context, (self._vocabulary() + 31) // 32)
+        found = score_chunks(jobs, with_context, without_context, (self.runner.vocabulary + 31) // 32)
         for job, one in zip(jobs, found, strict=True):
             states = self.runner.states.get(id(job.rows[0]))
             if one.result is not None and states is not None:
                 one.result.states = states.float().cpu().unbind()
         return found
 
-    def _vocabulary(self) -> int:
-        return int(self.model.get_output_embeddings().weight.shape[0])
-
     def _close_job(self, job: Job, keep: bool = False) -> None:
         self.jobs.remove(job)
         for row in reversed(job.rows):
             if keep and tried(partial(self.runner.keep, row, job.answer.ids)):
-                self.runner.prefixes.clear()
+                self.runner.forget()
             self.runner.close(row)
         job.rows = []
 
     def _clear_slots(self, job: Job) -> None:
         """Clears the job's slots: NaN in a slot would reach the next row there through a weight of 0."""
-        self.runner.prefixes.clear()
+        self.runner.forget()
         for row in job.rows:
-            row.lane.cache.clear(row.slot)
+            self.runner.clear(row)
 
     def _restart(self, fault: Exception) -> None:
         """Discards a failed computation of the batch and goes on from every report's tokens so far.

@@ -38,7 +38,7 @@ class PrefixStore:
     def longest(self, salt: tuple[str, ...], key: Key) -> tuple[Saved, int] | None:
         """The entry that shares the longest beginning, and its length; None if none is worth it."""
         found = max(
-            ((_common(entry.key, key), i) for i, entry in enumerate(self.entries) if entry.salt == salt),
+            ((common(entry.key, key), i) for i, entry in enumerate(self.entries) if entry.salt == salt),
             default=(0, -1),
         )
         if found[0] < SHORTEST:
@@ -49,12 +49,12 @@ class PrefixStore:
 
     def known(self, salt: tuple[str, ...], key: Key) -> bool:
         """True if the whole of it is kept already."""
-        return any(e.salt == salt and _common(e.key, key) == len(key) for e in self.entries)
+        return any(e.salt == salt and common(e.key, key) == len(key) for e in self.entries)
 
     def add(self, salt: tuple[str, ...], key: Key, saved: Saved) -> None:
         """Keep a prompt; forgets its own beginnings first, then what was not used for longest."""
         size = sum(part.element_size() * part.numel() for layer in saved if layer for part in layer)
-        self.entries = [e for e in self.entries if e.salt != salt or _common(e.key, key) < len(e.key)]
+        self.entries = [e for e in self.entries if e.salt != salt or common(e.key, key) < len(e.key)]
         self.entries.append(_Entry(salt, key, saved, size))
         while self.entries and sum(e.size for e in self.entries) > self.limit:
             self.entries.pop(0)
@@ -73,7 +73,7 @@ def prompt_key(ids: Sequence[int], spans: Sequence[tuple[int, int]], digests: Se
     return key
 
 
-def _common(left: Key, right: Key) -> int:
+def common(left: Key, right: Key) -> int:
     """Length of the shared beginning."""
     length = min(len(left), len(right))
     differ = np.flatnonzero(left[:length] != right[:length])

@@ -103,6 +103,51 @@ class Answer:
     """What the result should say of this answer."""
 
 
+class Rows(Protocol):
+    """What runs rows for the token loop: a model of transformers (`runner.Runner`), or another library's.
+
+    A row has the attributes `prompt`, `length` (tokens that it holds) and `reused` (tokens that came from kept ones).
+    """
+
+    calls: int
+    """Forward passes so far."""
+    states: dict[int, Any]
+    """By id of a row that was stepped: the states of its tokens, where the loop watches them."""
+
+    @property
+    def window(self) -> int:
+        """Tokens of a prompt and its answer together."""
+
+    @property
+    def vocabulary(self) -> int:
+        """Tokens that a row of logits tells."""
+
+    @property
+    def computed_in(self) -> str:
+        """Number type of the model's weights."""
+
+    def open(self, prompt: Prompt, behind: Sequence[int] = ()) -> Any:
+        """A row for a prompt that holds the prompt and `behind` except the last token."""
+
+    def step(self, chunks: Sequence[tuple[Any, Sequence[int]]]) -> list[Any]:
+        """Feeds tokens to all open rows at once; logits (tokens, vocabulary) of each. Lengths stay as they are."""
+
+    def keep(self, row: Any, behind: Sequence[int]) -> None:
+        """Keeps the row's prompt and the tokens fed after it for a prompt that continues them."""
+
+    def close(self, row: Any) -> None:
+        """Ends a row."""
+
+    def forget(self) -> None:
+        """Discards every kept beginning."""
+
+    def clear(self, row: Any) -> None:
+        """Sees to it that what a row holds, which may be NaN, reaches no other row."""
+
+    def reset(self) -> None:
+        """Discards every row and every kept beginning."""
+
+
 class Loop(Protocol):
     """What answers requests: the token loop of a model in this process, or a server's model verified token by token."""
 

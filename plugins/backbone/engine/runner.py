@@ -18,7 +18,7 @@ from plugins.backbone.engine.cache import SlotCache, Window
 from plugins.backbone.engine.families import Family
 from plugins.backbone.engine.prefix import SHORTEST, Key, PrefixStore, prompt_key
 from plugins.backbone.engine.records import Prompt
-from plugins.backbone.engine.supported import sliding_of
+from plugins.backbone.engine.supported import sliding_of, window_of
 
 
 @dataclass(eq=False)
@@ -55,6 +55,8 @@ class Runner:
         self.lanes: dict[str, Lane] = {}
         self.prefixes = PrefixStore(prefix_bytes)
         self.calls = 0
+        self.window = window_of(model)
+        self.vocabulary = int(model.get_output_embeddings().weight.shape[0])
         text = model.config.get_text_config()
         self.layers = int(text.num_hidden_layers)
         self.sliding = sliding_of(model)
@@ -63,6 +65,11 @@ class Runner:
         """What the output embedding got in the last pass, (rows, width, hidden), once `watch` was called."""
         self.states: dict[int, Tensor] = {}
         """By id of a row that was stepped: (tokens, hidden)."""
+
+    @property
+    def computed_in(self) -> str:
+        """Number type of the model's weights."""
+        return str(self.model.dtype).removeprefix("torch.")
 
     def watch(self) -> None:
         """Keeps, from now on, the states that every step's logits are computed from."""
@@ -122,6 +129,14 @@ class Runner:
         """Discards every row and every prefix: after memory ran out their content is not reliable."""
         self.lanes = {}
         self.prefixes.clear()
+
+    def forget(self) -> None:
+        """Discards every kept beginning."""
+        self.prefixes.clear()
+
+    def clear(self, row: Row) -> None:
+        """Sets a row's keys and values, which may hold NaN, to zero."""
+        row.lane.cache.clear(row.slot)
 
     def _lane(self, prompt: Prompt) -> Lane:
         name = self.family.lane(prompt) if self.apart else "all"

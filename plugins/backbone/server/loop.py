@@ -17,6 +17,7 @@ from plugins.backbone.hf_prompt import Prompter
 from plugins.backbone.hf_run import RunningModel, end_tokens
 from plugins.backbone.server.http import ServerHttp
 from plugins.backbone.server.llama_cpp import LlamaCpp
+from plugins.backbone.server.pictures import ShownPrompts
 from plugins.backbone.server.protocol import Offer, Speaker
 from plugins.backbone.server.sglang import SgLang
 from plugins.backbone.server.verify import Count, Verifier
@@ -98,7 +99,9 @@ class ServerLoop:
         self.http.client.close()
 
 
-def start(http: ServerHttp, protocol: str, model: str, tokenizer: str, tops: Tops, draft_tokens: int) -> RunningModel:
+def start(
+    http: ServerHttp, protocol: str, model: str, tokenizer: str, tops: Tops, draft_tokens: int, pictures: bool = False
+) -> RunningModel:
     """Asks the server what it has and makes ready to answer. Raises ConfigError, MissingTool or ServerSilent."""
     speaker = _speaker(http, protocol, model)
     offer = speaker.offer()
@@ -110,7 +113,8 @@ def start(http: ServerHttp, protocol: str, model: str, tokenizer: str, tops: Top
     alike = check_tokenizer(speaker, spells, tokenizer, http.base_url)
     most = tops.most if offer.most is None else min(offer.most, tops.most or offer.most)
     verifier = Verifier(speaker, max(size, maker.tokens.vocab_size), tops.first, most, draft_tokens)
-    prompter = Prompter(Loaded(None, spells, template, None), TextOnly())
+    words = Prompter(Loaded(None, spells, template, None), TextOnly())
+    prompter = ShownPrompts(words, speaker.shown) if pictures and isinstance(speaker, Vllm) else words
     return RunningModel(ServerLoop(http, offer, verifier, alike), prompter, maker, eos, f"{model} at {http.base_url}")
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -70,6 +71,11 @@ class Speaker(ABC):
     @abstractmethod
     def tops(self, prompt: Sequence[int], behind: Sequence[int], count: int, top: int) -> list[Top]:
         """The last `count` places of prompt and `behind`: [-1] is the place of the token that would follow."""
+
+    def tops_of(self, prompts: Sequence[Sequence[int]], behind: Sequence[int], count: int, top: int) -> list[list[Top]]:
+        """`tops` of several prompts behind which the same tokens stand: side by side, or in one request."""
+        with ThreadPoolExecutor(len(prompts)) as pool:
+            return list(pool.map(lambda prompt: self.tops(prompt, behind, count, top), prompts))
 
     @abstractmethod
     def exact(self, prompt: Sequence[int], behind: Sequence[int], tokens: Sequence[int]) -> dict[int, float]:

@@ -1,8 +1,9 @@
 """vLLM's completions: prompts as token ids, `prompt_logprobs` for a given text, `structured_outputs` for drafts.
 
 The server's limit of the top k is its option --max-logprobs (20 unless set, -1 the whole vocabulary). A request with
-prompt_logprobs does not read the server's prefix cache: it computes its prompt again. Pictures need the server's option
---enable-scale-out, whose pages render a chat into token ids with features and take both back.
+prompt_logprobs does not read the server's prefix cache: it computes its prompt again. Pictures need the server's
+scale-out pages (VLLM_ENABLE_SCALE_OUT_ENDPOINTS=1), which render a chat into token ids with features and take both
+back.
 """
 
 from __future__ import annotations
@@ -12,11 +13,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from plugins.backbone.server.http import ServerHttp, body_of, said
+from plugins.backbone.server.pictures import Content, Shown, sampling
 from plugins.backbone.server.protocol import Offer, Schema, Speaker, Top
 from sgcad_core.errors import ConfigError
 
 _LIMITS = (5000, 1000, 500, 200, 100, 50, 20, 10, 5, 1)
 _ALLOWED = re.compile(r"max(?:imum)? allowed:? (\d+)")
+_RENDER, _GENERATE = "v1/chat/completions/render", "inference/v1/generate"
 _TOKEN_ID = "token_id:"  # noqa: S105 - vLLM's spelling of a token's number
 
 
@@ -40,9 +43,14 @@ class Vllm(Speaker):
 
     def draft(self, prompt: Sequence[int], behind: Sequence[int], limit: int, schema: Schema) -> list[int]:
         """Greedy tokens, at the start of an answer guided by the schema in compact JSON."""
-        body: dict[str, Any] = {"max_tokens": limit, "return_token_ids": True}
+        body: dict[str, Any] = {}
         if schema is not None and not behind:
             body["structured_outputs"] = {"json": dict(schema), "disable_any_whitespace": True}
+        if isinstance(prompt, Shown):
+            return [
+                int(token) for token in self._seen(prompt, behind, sampling(limit, body))["choices"][0]["token_ids"]
+            ]
+        body |= {"max_tokens": limit, "return_token_ids": True}
         (choice,) = self._choices([[*prompt, *behind]], body)
         if (ids := choice.get("token_ids")) is None:
             raise ConfigError(
@@ -53,10 +61,21 @@ class Vllm(Speaker):
 
     def tops(self, prompt: Sequence[int], behind: Sequence[int], count: int, top: int) -> list[Top]:
         """One request: the last `count` - 1 tokens by prompt_logprobs, the next one by logprobs."""
+        return self.tops_of([prompt], behind, count, top)[0]
+
+    def tops_of(self, prompts: Sequence[Sequence[int]], behind: Sequence[int], count: int, top: int) -> list[list[Top]]:
+        """One request with a prompt for each row; a row that sees pictures has a request of its own."""
+        if any(isinstance(prompt, Shown) for prompt in prompts) and len(prompts) > 1:
+            return super().tops_of(prompts, behind, count, top)
+        if isinstance(prompts[0], Shown):
+            return [self._seen_tops(prompts[0], behind, count, top)]
         asked = {"max_tokens": 1, "logprobs": top, "return_tokens_as_token_ids": True}
         if count > 1:
             asked["prompt_logprobs"] = top
-        (choice,) = self._choices([[*prompt, *behind]], asked)
+        choices = self._choices([[*prompt, *behind] for prompt in prompts], asked)
+        return [self._told(choice, count, top) for choice in choices]
+
+    def _told(self, choice: Mapping[str, Any], count: int, top: int) -> list[Top]:
         places = (choice.get("prompt_logprobs") or [])[1 - count :] if count > 1 else []
         if len(places) != count - 1 or None in places:
             raise ConfigError(self._without("gave no prompt_logprobs"))
@@ -65,9 +84,44 @@ class Vllm(Speaker):
     def exact(self, prompt: Sequence[int], behind: Sequence[int], tokens: Sequence[int]) -> dict[int, float]:
         """One request with a prompt for each token: prompt_logprobs tell the token that stands there, whatever k."""
         known = [*prompt, *behind]
+        if isinstance(prompt, Shown):
+            return {token: self._seen_tops(prompt, [*behind, token], 2, 1)[0].known[token] for token in tokens}
         choices = self._choices([[*known, token] for token in tokens], {"max_tokens": 1, "prompt_logprobs": 1})
         last = [dict(_pairs(choice["prompt_logprobs"][-1])) for choice in choices]
         return {token: last[i][token] for i, token in enumerate(tokens)}
+
+    # ------------------------------------------------------------------ pictures
+    def shown(self, content: Content) -> Shown:
+        """A user's turn with its pictures, rendered by the server. Raises ConfigError where it has no such page."""
+        body = {
+            "model": self.model,
+            "messages": [{"role": "user", "content": content}],
+            "chat_template_kwargs": {"enable_thinking": False},
+        }
+        response = self.http.status_of(_RENDER, body)
+        found = body_of(response, "token_ids", "features") if response.status_code < 400 else None
+        if found is None:
+            raise ConfigError(
+                f"{self.http.url(_RENDER)} rendered no pictures; start vLLM with VLLM_ENABLE_SCALE_OUT_ENDPOINTS=1 and "
+                f"a model that sees pictures, or set backbone.pictures false. It said: {said(response)}"
+            )
+        return Shown(found["token_ids"], found["features"])
+
+    def _seen(self, prompt: Shown, behind: Sequence[int], asked: Mapping[str, Any]) -> dict[str, Any]:
+        sent = {"token_ids": [*prompt, *behind], "features": prompt.features, "sampling_params": dict(asked)}
+        response = self.http.post(_GENERATE, {"model": self.model, **sent})
+        found = body_of(response, "choices")
+        if found is None:
+            raise ConfigError(f"{self.http.url(_GENERATE)} answered no tokens but {said(response)}; use a newer vLLM")
+        return found
+
+    def _seen_tops(self, prompt: Shown, behind: Sequence[int], count: int, top: int) -> list[Top]:
+        more = {"logprobs": top, **({"prompt_logprobs": top} if count > 1 else {})}
+        found = self._seen(prompt, behind, sampling(1, more))
+        told = ((found["choices"][0].get("logprobs") or {}).get("content") or [{}])[0].get("top_logprobs") or []
+        listed = {entry["token"]: entry["logprob"] for entry in told}
+        choice = {"prompt_logprobs": found.get("prompt_logprobs"), "logprobs": {"top_logprobs": [listed]}}
+        return self._told(choice, count, top)
 
     def _choices(self, prompts: list[list[int]], body: Mapping[str, Any]) -> list[dict[str, Any]]:
         sent = {"model": self.model, "prompt": prompts if len(prompts) > 1 else prompts[0], "temperature": 0, **body}

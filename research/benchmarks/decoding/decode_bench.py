@@ -11,7 +11,7 @@ from typing import Any
 import torch
 
 from plugins.backbone.engine.faults import EngineFault
-from plugins.backbone.engine.loop import Engine
+from plugins.backbone.engine.loop import Engine, engine_of
 from plugins.backbone.engine.records import Answer, Prompt, Request
 from research.benchmarks.decoding import decode_setup as setup
 
@@ -124,7 +124,7 @@ class Bench:
         self.language = setup.language(self.size.text["vocab_size"])
 
     def engine(self, apart: bool = False, prefix_bytes: int = 0) -> Engine:
-        return Engine(self.model, self.family, apart, 16, prefix_bytes)
+        return engine_of(self.model, self.family, apart, 16, prefix_bytes)
 
     def request(
         self, engine: Engine, prompts: tuple[Prompt, Prompt], arm: Arm, cut: int | None = None, **fields: Any

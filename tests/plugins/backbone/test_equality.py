@@ -13,7 +13,7 @@ import torch
 from plugins.backbone.engine.check import batching, reference
 from plugins.backbone.engine.families import Family
 from plugins.backbone.engine.grammar import Grammar, GrammarCompiler, allowed
-from plugins.backbone.engine.loop import Engine
+from plugins.backbone.engine.loop import engine_of
 from plugins.backbone.engine.records import Answer, Prompt, Request
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
@@ -89,7 +89,7 @@ def run(
 ) -> Any:
     """`count` reports at once through the engine: prompts, answers and recorded rows."""
     model, family, apart = model_of(name)
-    engine = Engine(model, family, apart, reports_at_once=8, watched=watched)
+    engine = engine_of(model, family, apart, reports_at_once=8, watched=watched)
     reports = [tiny.prompts(name, family, seed) for seed in range(count)]
     recorders = [Recorder(decoder) for _ in reports]
     requests = [

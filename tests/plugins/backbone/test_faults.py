@@ -13,7 +13,7 @@ import transformers as tf
 from plugins.backbone.engine.families import Family, family_of
 from plugins.backbone.engine.faults import BadLogits, BadScores, EngineFault, TooBig
 from plugins.backbone.engine.grammar import Grammar, GrammarCompiler, GrammarState
-from plugins.backbone.engine.loop import Engine
+from plugins.backbone.engine.loop import engine_of
 from plugins.backbone.engine.records import Answer, Prompt, Request
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
@@ -65,7 +65,7 @@ def request(family: Family, seed: int, decoder: Decoder | None = None, tokens: i
 
 
 def alone(model: Any, family: Family, one: Request) -> Answer:
-    engine = Engine(model, family, prefix_bytes=0)
+    engine = engine_of(model, family, prefix_bytes=0)
     answer = engine.generate(one)
     engine.close()
     return answer
@@ -93,7 +93,7 @@ def test_a_decoder_that_goes_wrong_costs_its_own_report_alone(how: str) -> None:
     bad, kind, said = BAD[how]
     model, family = tiny.build("text_only")
     good = [request(family, seed) for seed in range(3)]
-    engine = Engine(model, family)
+    engine = engine_of(model, family)
     futures = [engine.submit(one) for one in (good[0], request(family, 9, After(bad=bad, seen=[])), *good[1:])]
     with pytest.raises(kind, match=said):
         futures.pop(1).result(WAIT_S)
@@ -110,7 +110,7 @@ def test_a_draw_that_is_no_token_is_named_and_costs_its_own_report_alone(drawn: 
             return drawn
 
     model, family = tiny.build("text_only")
-    engine = Engine(model, family)
+    engine = engine_of(model, family)
     futures = [engine.submit(request(family, 0, Odd())), engine.submit(request(family, 1))]
     with pytest.raises(BadScores, match=r"draw gave|outside the vocabulary"):
         futures[0].result(WAIT_S)
@@ -148,7 +148,7 @@ def test_a_model_that_raises_on_one_report_answers_the_others_one_by_one() -> No
     model.fault = RuntimeError("shapes do not match")
     ends_in_it = Prompt([*good[0].with_context.ids, POISON])  # its last token goes through the shared step
     begins_with_it = Prompt([POISON, *good[0].with_context.ids])  # this one through a prefill of its own
-    engine = Engine(model, family)
+    engine = engine_of(model, family)
     bad = [Request(prompt, None, Greedy(), None, 0, 10, EOS) for prompt in (ends_in_it, begins_with_it)]
     futures = [engine.submit(one) for one in (good[0], *bad, *good[1:])]
     for future in (futures.pop(1), futures.pop(1)):
@@ -166,7 +166,7 @@ def test_what_no_boundary_may_catch_ends_the_loop_and_every_wait() -> None:
 
     model, family = touchy()
     model.fault = Broken("panic")
-    engine = Engine(model, family)
+    engine = engine_of(model, family)
     future = engine.submit(Request(Prompt([5, POISON]), None, Greedy(), None, 0, 10, EOS))
     with pytest.raises(EngineFault, match="closed before this report was answered: Broken: panic"):
         future.result(WAIT_S)
@@ -186,7 +186,7 @@ def test_a_grammar_that_raises_costs_its_own_report_alone() -> None:
             return Breaks(self)
 
     model, family = tiny.build("text_only")
-    engine = Engine(model, family)
+    engine = engine_of(model, family)
     bad = Bad(GrammarCompiler(tiny.tokenizer(), tiny.VOCABULARY, [2]), tiny.SCHEMA)
     futures = [engine.submit(request(family, i, grammar=g, tokens=90)) for i, g in enumerate((bad, grammar()))]
     with pytest.raises(ValueError, match="the matcher is in an error state"):
@@ -197,7 +197,7 @@ def test_a_grammar_that_raises_costs_its_own_report_alone() -> None:
 def test_a_cancelled_report_leaves_and_the_others_stay() -> None:
     model, family = tiny.build("text_only")
     good = [request(family, seed, tokens=30) for seed in range(3)]
-    engine = Engine(model, family, reports_at_once=2)
+    engine = engine_of(model, family, reports_at_once=2)
     endless = [engine.submit(request(family, 5, Greedy(), tokens=900)) for _ in range(3)]
     futures = [engine.submit(one) for one in good]
     for future in endless:  # one or two of them run, the rest wait
@@ -212,7 +212,7 @@ def test_bad_logits_of_one_report_leave_the_others_their_answers() -> None:
     with torch.no_grad():
         model.model.embed_tokens.weight[POISON] = math.nan
     clean = Request(Prompt(tiny.words(9, 1)), None, Greedy(), None, 0, 10, EOS)
-    engine = Engine(model, family)
+    engine = engine_of(model, family)
     bad = engine.submit(Request(Prompt([5, POISON, 6]), None, Greedy(), None, 0, 10, EOS))
     good = engine.submit(clean)
     with pytest.raises(BadLogits, match="the model gave NaN or inf behind token 0"):
@@ -224,7 +224,7 @@ def test_bad_logits_of_one_report_leave_the_others_their_answers() -> None:
 def test_a_single_report_is_tried_again_with_the_caches_emptied_before_it_is_given_up() -> None:
     model, family = touchy()
     expected = alone(model, family, request(family, 0)).ids
-    engine = Engine(model, family)
+    engine = engine_of(model, family)
     assert engine.generate(request(family, 0)).ids == expected
     model.cramped = 1
     assert engine.generate(request(family, 0)).ids == expected
@@ -239,7 +239,7 @@ def test_memory_running_out_while_a_draft_is_checked_takes_back_only_what_the_gr
     plain = alone(model, family, request(family, 1, tokens=90, grammar=rules))
     again = request(family, 1, tokens=90, grammar=rules, draft=plain.ids)
     for first in range(3, 6):  # the steps behind the two prefills
-        engine = Engine(model, family)
+        engine = engine_of(model, family)
         steps = iter(range(99))
         whole = engine.runner.step
 
@@ -265,7 +265,7 @@ def test_neither_draft_nor_jump_forward_nor_the_reports_beside_it_change_what_is
         assert alone(model, family, request(family, 3, decoder, 90, grammar=rules, draft=draft)).ids == plain.ids
     stepped = alone(model, family, request(family, 3, decoder, 90, grammar=rules, jump_forward=False))
     assert stepped.ids == plain.ids
-    engine = Engine(model, family)
+    engine = engine_of(model, family)
     beside = [engine.submit(request(family, seed, Nucleus(temperature=2.0), 40)) for seed in (7, 8)]
     assert engine.generate(request(family, 3, decoder, 90, grammar=rules, draft=wrong)).ids == plain.ids
     assert all(future.result(WAIT_S) for future in beside)
@@ -302,9 +302,9 @@ def test_a_report_of_two_pictures_leaves_nothing_to_one_of_one_picture() -> None
     requests = [
         Request(prompt, Prompt(task), Cad(), None, 0, tokens, EOS) for prompt, tokens in ((two, 5), (one, 14), (one, 8))
     ]
-    engine = Engine(model, family, apart=True)
+    engine = engine_of(model, family, apart=True)
     futures = [engine.submit(one) for one in requests[:2]]
     found = [future.result(WAIT_S).ids for future in futures] + [engine.generate(requests[2]).ids]
     for ids, one_request in zip(found, requests, strict=True):
-        fresh = Engine(model, family, apart=True, prefix_bytes=0)
+        fresh = engine_of(model, family, apart=True, prefix_bytes=0)
         assert ids == fresh.generate(one_request).ids

@@ -265,7 +265,7 @@ def test_nan_logits_stop_the_report_with_the_step_and_not_the_others(tmp_path: P
     good = backbone.generate(folders.context(1, 0), query, Cad())
     poison = backbone._loaded().prompter.tokenizer.convert_tokens_to_ids("Z")
     with torch.no_grad():
-        backbone._loaded().engine.model.get_input_embeddings().weight[poison] = float("nan")
+        backbone._loaded().engine.runner.model.get_input_embeddings().weight[poison] = float("nan")
     with ThreadPoolExecutor(4) as pool:
         futures = [
             pool.submit(backbone.generate, Context(narrative=text), query, Cad())
@@ -312,7 +312,7 @@ def test_quantization_without_its_package_says_how_to_install_it(backbones: dict
     if importlib.util.find_spec("bitsandbytes"):
         pytest.skip("bitsandbytes is installed here")
     packed = HfVision(**{**backbones["llava"].model_dump(), "quantization": "int4"})
-    with pytest.raises(MissingTool, match=r"quantization needs the package 'bitsandbytes'.*sg-cadvlm\[gpu\]"):
+    with pytest.raises(MissingTool, match=r"the package bitsandbytes is not installed: pip install 'sg-cadvlm\[gpu\]'"):
         packed.generate(folders.context(), QUERY, Cad())
 
 
@@ -330,7 +330,7 @@ def test_native_is_the_dtype_that_the_device_multiplies_in(
     backbone = HfVision(model=folder, device="cpu", dtype="native", max_new_tokens=200)
     found = backbone.generate(folders.context(), QUERY, Greedy())
     valid(found)
-    assert backbone._loaded().engine.model.dtype == dtype
+    assert backbone._loaded().engine.runner.model.dtype == dtype
     assert f"computed in {str(dtype).removeprefix('torch.')}" in found.notes
 
 
@@ -343,7 +343,7 @@ def test_backbones_of_one_model_share_it_and_the_last_one_frees_it(tmp_path: Pat
     engine = first._loaded().engine
     assert engine is second._loaded().engine
     assert engine is not other._loaded().engine
-    weights, thread = weakref.ref(engine.model), engine.thread
+    weights, thread = weakref.ref(engine.runner.model), engine.thread
     assert thread is not None
     del first, engine, backbone
     gc.collect()
@@ -388,3 +388,37 @@ def test_tokens_at_which_both_rows_disagree_are_kept_with_their_fields(backbones
     assert {c.winner for c in kept} <= {"evidence", "prior", "neither"}
     assert kept
     assert backbones["text_only"].generate(folders.context(), QUERY, Greedy()).conflicts == ()
+
+
+# ------------------------------------------------------------------ a tokenizer that is larger than the model
+def with_tokens(folder: Path, texts: list[str], special: bool) -> Path:
+    """The folder with further tokens in its tokenizer, behind the model's outputs."""
+    from tokenizers import AddedToken
+
+    tokenizer = tiny.tokenizer()
+    tokenizer.add_tokens([AddedToken(f"<fill{i}>", special=True) for i in range(tiny.VOCABULARY - len(tokenizer))])
+    tokenizer.add_tokens([AddedToken(text, special=special, normalized=False) for text in texts])
+    tokenizer.save_pretrained(folder)
+    return folder
+
+
+def test_words_without_an_output_are_told_with_both_numbers(tmp_path: Path) -> None:
+    folder = with_tokens(folders.save("text_only", tmp_path), ["roundabout", "crosswalk"], special=False)
+    with pytest.raises(
+        ConfigError, match=r"tokenizer has 302 tokens, the model 300 outputs: 2 tokens cannot be written"
+    ):
+        HfVision(model=str(folder), dtype="float32", device="cpu").load()
+
+
+def test_special_tokens_that_are_only_read_may_lie_behind_the_outputs(tmp_path: Path) -> None:
+    folder = with_tokens(folders.save("text_only", tmp_path), ["<|picture|>"], special=True)
+    with pytest.raises(ConfigError, match="301 tokens"):  # it has no embedding either
+        HfVision(model=str(folder), dtype="float32", device="cpu").load()
+    model, _ = tiny.build("mllama")  # eight embeddings more than outputs
+    assert model.get_input_embeddings().weight.shape[0] > model.get_output_embeddings().weight.shape[0]
+    folder = with_tokens(folders.save("mllama", tmp_path / "mllama", template=None), ["<|picture|>"], special=True)
+    backbone = HfVision(model=str(folder), dtype="float32", device="cpu", max_new_tokens=200)
+    found = backbone.generate(
+        Context(narrative="V1 struck V2."), Query(task="Tell.", answer_schema=tiny.SCHEMA), Greedy()
+    )
+    assert list(json.loads(found.text)) == list(tiny.SCHEMA["properties"])

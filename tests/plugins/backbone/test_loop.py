@@ -14,7 +14,7 @@ from plugins.backbone.engine.check import batching, kept_batching
 from plugins.backbone.engine.families import Family, family_of
 from plugins.backbone.engine.faults import DoesNotFit, EngineFault, TooBig, TooLong, WrongBatch
 from plugins.backbone.engine.grammar import GrammarCompiler
-from plugins.backbone.engine.loop import Engine
+from plugins.backbone.engine.loop import engine_of
 from plugins.backbone.engine.records import Prompt, Request
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
@@ -58,7 +58,7 @@ def request(family: Family, seed: int, decoder: Decoder | None = None, tokens: i
 def alone(model: Any, family: Family, requests: Sequence[Request]) -> list[list[int]]:
     found = []
     for one in requests:
-        engine = Engine(model, family)
+        engine = engine_of(model, family)
         found.append(engine.generate(one).ids)
         engine.close()
     return found
@@ -67,7 +67,7 @@ def alone(model: Any, family: Family, requests: Sequence[Request]) -> list[list[
 def test_reports_enter_and_leave_and_each_gets_the_answer_it_would_get_alone() -> None:
     model, family = tiny.build("text_only")
     requests = [request(family, seed, tokens=4 + 3 * (seed % 5)) for seed in range(9)]
-    engine = Engine(model, family, reports_at_once=3)
+    engine = engine_of(model, family, reports_at_once=3)
     futures = [engine.submit(one) for one in requests]
     assert [future.result(30).ids for future in futures] == alone(model, family, requests)
     assert engine.jobs == []
@@ -80,7 +80,7 @@ def test_memory_running_out_halves_the_batch_and_loses_nothing() -> None:
     requests = [request(family, seed) for seed in range(6)]
     expected = alone(model, family, requests)
     model.rows = 5
-    engine = Engine(model, family, reports_at_once=6)
+    engine = engine_of(model, family, reports_at_once=6)
     futures = [engine.submit(one) for one in requests]
     assert [future.result(30).ids for future in futures] == expected
     assert engine.halved >= 1
@@ -94,9 +94,9 @@ def test_memory_running_out_in_the_middle_keeps_grammar_draws_and_log_probabilit
     with_, without = tiny.prompts("text_only", family, 1)
     late = Request(with_, without, decoder, grammar, 5, 90, EOS)
     model.rows = 99
-    plain = Engine(model, family).generate(late)
+    plain = engine_of(model, family).generate(late)
     model.rows = 3
-    engine = Engine(model, family, reports_at_once=4)
+    engine = engine_of(model, family, reports_at_once=4)
     futures = [engine.submit(one) for one in (late, *(request(family, s, tokens=20) for s in range(3)))]
     crowded = futures[0].result(30)
     assert crowded.ids == plain.ids
@@ -108,7 +108,7 @@ def test_memory_running_out_in_the_middle_keeps_grammar_draws_and_log_probabilit
 def test_a_single_report_that_does_not_fit_in_memory_fails_and_the_next_is_tried() -> None:
     model, family = built(Cramped)
     model.rows = 1
-    engine = Engine(model, family)
+    engine = engine_of(model, family)
     with pytest.raises(TooBig, match=r"one report alone does not fit in memory: .*2 rows"):
         engine.generate(request(family, 0))
     with_, _ = tiny.prompts("text_only", family, 0)
@@ -117,7 +117,7 @@ def test_a_single_report_that_does_not_fit_in_memory_fails_and_the_next_is_tried
 
 def test_the_second_row_reuses_the_shared_beginning_and_a_repair_everything_before_its_findings() -> None:
     model, family = tiny.build("qwen2_5_vl")
-    engine = Engine(model, family)
+    engine = engine_of(model, family)
     with_, without = tiny.prompts("qwen2_5_vl", family, 0, shared=30)
     first = engine.generate(Request(with_, without, Cad(), None, 0, 12, EOS))
     assert first.reused_tokens >= 30
@@ -126,7 +126,7 @@ def test_the_second_row_reuses_the_shared_beginning_and_a_repair_everything_befo
     repair = Request(longer[0], longer[1], Cad(), None, 0, 12, EOS)
     again = engine.generate(repair)
     assert again.prompt_tokens - again.reused_tokens <= 2 * (len(findings) + 1)
-    fresh = Engine(model, family, prefix_bytes=0).generate(repair)
+    fresh = engine_of(model, family, prefix_bytes=0).generate(repair)
     assert fresh.reused_tokens == 0
     assert again.ids == fresh.ids
     assert again.with_context == pytest.approx(fresh.with_context, abs=1e-4)
@@ -135,14 +135,14 @@ def test_the_second_row_reuses_the_shared_beginning_and_a_repair_everything_befo
 @pytest.mark.parametrize("name", list(tiny.BUILDERS))
 def test_another_picture_in_the_same_place_is_not_taken_for_the_first(name: str) -> None:
     model, family = tiny.build(name)
-    engine = Engine(model, family, apart=name == "mllama")
+    engine = engine_of(model, family, apart=name == "mllama")
     task, rest = tiny.words(20, 1), tiny.words(6, 2)
     seeds = (4, 16) if name != "idefics3" else (3, 6)
     pictures = [tiny.picture(name, seed) for seed in seeds]
     prompts = [Prompt([*task, *[tiny.IMAGE_TOKEN] * family.tokens_of(p), *rest], [p]) for p in pictures]
     for prompt in (*prompts, *prompts):
         request = Request(prompt, None, Greedy(), None, 0, 4, EOS)
-        fresh = Engine(model, family, apart=name == "mllama", prefix_bytes=0).generate(request)
+        fresh = engine_of(model, family, apart=name == "mllama", prefix_bytes=0).generate(request)
         assert engine.generate(request).with_context == pytest.approx(fresh.with_context, abs=1e-4)
 
 
@@ -150,12 +150,12 @@ def test_a_prompt_beyond_the_window_is_refused_with_both_numbers() -> None:
     model, family = tiny.build("text_only")
     long = Request(Prompt(tiny.words(1000, 1)), None, Greedy(), None, 0, 50, EOS)
     with pytest.raises(TooLong, match=r"prompt has 1000 tokens and the answer may have 50, .* 1050; .* is 1024"):
-        Engine(model, family).generate(long)
+        engine_of(model, family).generate(long)
 
 
 def test_a_prompt_that_ends_in_a_picture_is_refused_and_leaves_no_row_behind() -> None:
     model, family = tiny.build("llava")
-    engine = Engine(model, family)
+    engine = engine_of(model, family)
     picture = tiny.picture("llava", 1)
     bad = Prompt([5, *[tiny.IMAGE_TOKEN] * family.tokens_of(picture)], [picture])
     with pytest.raises(ValueError, match="ends in a picture"):
@@ -169,7 +169,7 @@ def test_a_prompt_that_ends_in_a_picture_is_refused_and_leaves_no_row_behind() -
 
 def test_a_closed_engine_answers_nobody_and_says_so() -> None:
     model, family = tiny.build("text_only")
-    engine = Engine(model, family, reports_at_once=1)
+    engine = engine_of(model, family, reports_at_once=1)
     futures = [engine.submit(request(family, seed, tokens=400)) for seed in range(3)]
     engine.close()
     for future in futures:
@@ -227,5 +227,5 @@ def test_a_dead_end_names_the_field() -> None:
     model, family = tiny.build("text_only")
     with_, without = tiny.prompts("text_only", family, 0)
     with pytest.raises(DoesNotFit, match="no token may follow") as caught:
-        Engine(model, family).generate(Request(with_, without, Cad(), maker.grammar(lanes), 0, 60, frozenset({256})))
+        engine_of(model, family).generate(Request(with_, without, Cad(), maker.grammar(lanes), 0, 60, frozenset({256})))
     assert caught.value.path == "lanes"

@@ -226,3 +226,44 @@ def test_the_check_of_a_config_whose_server_is_away_says_so(folder: Path) -> Non
     config = SimpleNamespace(backbone=through("http://127.0.0.1:9", folder), decoder=Cad())
     (line,) = served(config)  # type: ignore[arg-type]
     assert line.startswith("backbone: http://127.0.0.1:9/v1/models gave no answer in 1 tries")
+
+
+# ------------------------------------------------------------------ pictures
+@pytest.mark.parametrize("name", ["qwen2_5_vl", "llava"])
+def test_tokens_behind_pictures_equal_those_in_process(name: str, tmp_path: Path) -> None:
+    """Diagrams go out as data URLs; the contrast is with a row that sees neither narrative nor picture."""
+    folder = save(name, tmp_path)
+    inside = HfVision(model=str(folder), dtype="float32", device="cpu", max_new_tokens=90)
+    known = {"protocol": "vllm", "max_new_tokens": 90, "top_logprobs": WHOLE}
+    with serving(ServedModel(folder, window=1024), "tiny") as address:
+        server = through(address, folder, **known, pictures=True)
+        narrow = through(address, folder, **{**known, "top_logprobs": 20}, pictures=True)
+        for decoder in (Cad(alpha=0.7), Cad(alpha=1.5, beta=0.1), Greedy()):
+            wanted = inside.generate(context(1), question(), decoder)
+            assert_same(server.generate(context(1), question(), decoder), wanted)
+        assert_same(
+            narrow.generate(context(2), question(), Cad(beta=0.1)),
+            inside.generate(context(2), question(), Cad(beta=0.1)),
+        )
+        unseen = through(address, folder, **known).generate(context(1), question(), Cad())
+        assert "the model is shown no pictures: diagrams are left out" in unseen.notes
+        others = [context(1).model_copy(update={"diagrams": context(n).diagrams}) for n in (1, 9)]
+        seen = [server.generate(other, question(), Greedy()) for other in others]
+        assert seen[0].tokens[0].logp_with_context != seen[1].tokens[0].logp_with_context, "another picture"
+
+
+def test_pictures_through_another_protocol_are_refused_by_name(folder: Path) -> None:
+    with pytest.raises(ValueError, match="protocol sglang takes no tokens with pictures; set protocol vllm"):
+        through("http://127.0.0.1:9", folder, pictures=True)
+
+
+def test_a_server_that_renders_no_pictures_is_told(url: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from research.benchmarks.decoding.served import Pages
+
+    monkeypatch.setattr(Pages, "render", lambda *_: {"token_ids": [1, 2, 3], "features": None})
+    with serving(ServedModel(folder, window=1024), "tiny") as address:
+        server = through(address, folder, protocol="vllm", pictures=True)
+        with pytest.raises(
+            ConfigError, match="rendered no pictures; start vLLM with VLLM_ENABLE_SCALE_OUT_ENDPOINTS=1"
+        ):
+            server.generate(context(1), question(), Cad())

@@ -10,7 +10,7 @@ import pytest
 
 from plugins.backbone.engine.check import reference
 from plugins.backbone.engine.grammar import Grammar, GrammarCompiler, allowed
-from plugins.backbone.engine.loop import Engine
+from plugins.backbone.engine.loop import engine_of
 from plugins.backbone.engine.records import Answer, Prompt, Request
 from plugins.decoder.adacad import AdaCad
 from plugins.decoder.cad import Cad
@@ -35,7 +35,7 @@ def nothing() -> Prompt:
 
 def answers(reports: list[Prompt], decoder: Decoder, grammar: Grammar | None) -> list[Answer]:
     model, family = trained.model()
-    engine = Engine(model, family, reports_at_once=8)
+    engine = engine_of(model, family, reports_at_once=8)
     requests = [Request(prompt, nothing(), decoder, grammar, 0, 80, EOS) for prompt in reports]
     found = [future.result(60) for future in [engine.submit(request) for request in requests]]
     engine.close()

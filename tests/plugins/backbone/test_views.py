@@ -11,7 +11,7 @@ from PIL import Image
 from pydantic import ValidationError
 
 from plugins.backbone.engine.check import reference
-from plugins.backbone.engine.loop import Engine
+from plugins.backbone.engine.loop import engine_of
 from plugins.backbone.engine.records import Prompt, Request
 from plugins.backbone.engine.scoring import averaged
 from plugins.backbone.hf_load import shifted_view
@@ -50,7 +50,7 @@ def plain(name: str, request: Request) -> list[int]:
 @pytest.mark.parametrize("name", ["qwen2_5_vl", "llava", "mllama"])
 def test_views_are_the_mean_of_separate_forwards(name: str, decoder: Decoder) -> None:
     model, family = tiny.build(name)
-    engine = Engine(model, family, apart=True)
+    engine = engine_of(model, family, apart=True)
     with_, without = tiny.prompts(name, family, 0)
     views = [seen(name, with_, 6), seen(name, with_, 12)]
     request = Request(with_, without if decoder.reads_prior() else None, decoder, None, 0, TOKENS, EOS, views=views)
@@ -66,7 +66,7 @@ def test_views_are_the_mean_of_separate_forwards(name: str, decoder: Decoder) ->
 
 def test_views_of_the_same_picture_change_nothing() -> None:
     model, family = tiny.build("qwen2_5_vl")
-    engine = Engine(model, family)
+    engine = engine_of(model, family)
     with_, without = tiny.prompts("qwen2_5_vl", family, 0)
     one, three = (
         engine.generate(Request(with_, without, Cad(), None, 0, TOKENS, EOS, views=[with_] * count)) for count in (0, 2)

@@ -1,0 +1,109 @@
+"""What this machine has and lacks for a GGUF file: the package, the file, memory, and the seconds to expect.
+
+Times are estimates from two short measurements: a row's token reads all weights once, a prompt computes two operations
+a parameter and token. Loads no weights.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from plugins.backbone import hf_gguf
+from plugins.backbone.llama import header, library
+from plugins.backbone.llama.rows import cells
+from sgcad_core.errors import ConfigError, MissingTool
+
+_PER_PARAMETER = {"Q2": 0.42, "Q3": 0.5, "Q4": 0.62, "Q5": 0.72, "Q6": 0.83, "Q8": 1.07, "F16": 2.0, "BF16": 2.0}
+"""Bytes a parameter by the packing that stands in a file's name."""
+_PACKED = re.compile(r"(?<![A-Za-z])(BF16|F16|Q[2-8])(?![0-9])", re.IGNORECASE)
+_BILLIONS = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[bB](?![a-zA-Z])")
+_PROMPT, _ANSWER = 3000, 300
+"""Tokens of a question and an answer that the expectation is told for."""
+_PRODUCTS, _READING = 0.7, 0.25
+"""Shares of the rates of plain matrix products and of plain reading that packed weights reach, for prompts and for
+answers: fitted on one model (SmolLM2-135M, Q4_1, one thread), so an order of magnitude for others."""
+
+
+def lacks(model: str) -> tuple[str, ...]:
+    """What has to be installed or fetched before a file runs here, a line each. Raises ConfigError for no GGUF file."""
+    lines = (
+        [] if library.installed() else [f"backbone: the package llama-cpp-python is not installed: {library.REMEDY}"]
+    )
+    try:
+        file = hf_gguf.file_of(model)
+    except (MissingTool, ConfigError) as fault:
+        return (*lines, f"backbone: {fault}")
+    header.read(file)
+    return tuple(lines)
+
+
+def weights_gb(model: str, window: int, reports: int) -> float | None:
+    """Memory of the packed weights and of the keys and values, decimal GB; None if unknown."""
+    found = _header(model)
+    if found is None:
+        name = Path(model).name
+        packed, size = _PACKED.search(name), _BILLIONS.findall(name)
+        return float(size[-1]) * _PER_PARAMETER.get(packed[1].upper(), 0.62) if packed and size else None
+    return (found.size + found.cell_bytes * cells(_window(found, window), reports)) / 1e9
+
+
+def expectation(model: str, window: int, reports: int, rows: int, gpu_layers: int) -> tuple[str, ...]:
+    """Memory and the seconds to expect on this machine's processor, in words; nothing where there is no file."""
+    found = _header(model)
+    if found is None or not found.parameters:
+        return ()
+    memory = found.cell_bytes * cells(_window(found, window), reports) / 1e9
+    lines = [f"backbone: memory: {found.size / 1e9:.2f} GB of packed weights and {memory:.2f} GB of keys and values"]
+    if gpu_layers:
+        return (*lines, "backbone: seconds are not estimated for layers on a graphics card")
+    read, computed = _measured()
+    token = rows * found.size / read
+    prompt = 2 * _PROMPT * found.parameters / computed
+    kind = "two rows" if rows > 1 else "one row"
+    processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    lines.append(
+        f"backbone: expected: about {_rounded(prompt)} s for a prompt of {_PROMPT} tokens and "
+        f"{_rounded(token * _ANSWER)} s for {_ANSWER} tokens of answer in {kind}, at {read / 1e9:.2g} GB/s of weights "
+        f"and {computed / 1e9:.2g} GFLOP/s by a measurement just now, with {processors} processors; kept beginnings "
+        "and forced tokens cost less"
+    )
+    return tuple(lines)
+
+
+def _header(model: str) -> header.Header | None:
+    try:
+        return header.read(hf_gguf.file_of(model))
+    except (MissingTool, ConfigError):
+        return None
+
+
+def _window(found: header.Header, window: int) -> int:
+    return min(window, found.number("context_length", window) or window)
+
+
+def _measured() -> tuple[float, float]:
+    """Bytes of packed weights that are read a second, and operations a second of packed products."""
+    large = np.ones(1 << 25, np.float32)
+    left = np.ones((768, 768), np.float32)
+    read = _READING * large.nbytes / _best(lambda: large.sum())
+    computed = _PRODUCTS * 2 * 768**3 / _best(lambda: left @ left)
+    return read, computed
+
+
+def _best(work: Callable[[], object]) -> float:
+    found = []
+    for _ in range(3):
+        started = time.perf_counter()
+        work()
+        found.append(time.perf_counter() - started)
+    return max(min(found), 1e-9)
+
+
+def _rounded(seconds: float) -> str:
+    return f"{seconds:.2g}" if seconds < 10 else f"{round(seconds, -1 if seconds > 100 else 0):.0f}"

@@ -1,0 +1,119 @@
+"""A GGUF file run by llama.cpp in this process: contrast on a laptop's processor, weights kept as they are packed.
+
+The token loop, the grammar and the decoders are those of `hf_vision`; only the rows are llama.cpp's. Pictures are not
+shown. Loads at the first question.
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import ClassVar
+
+from pydantic import Field, PrivateAttr, field_validator
+
+from plugins.backbone import hf_gguf, hf_run
+from plugins.backbone.prompt import EarlierAnswers, Parts, parts, subject, with_previous
+from sgcad_core.case.records import Context, Generation, Query
+from sgcad_core.errors import ConfigError
+from sgcad_core.interfaces import Backbone, Decoder
+
+
+class LlamaCpp(Backbone):
+    """Runs a GGUF file by llama.cpp; it gives logits, so it works with every decoder that contrasts texts.
+
+    max_new_tokens is the limit of one answer, gpu_layers how many layers go to a graphics card (-1: all).
+    """
+
+    gives_logits: ClassVar[bool] = True
+    model: str = Field(
+        min_length=1,
+        description="a .gguf file (also from the project's root), package:NAME/FILE.gguf, or hub:OWNER/NAME/FILE.gguf",
+    )
+    window: int = Field(8192, ge=256, description="tokens of a prompt and its answer; memory grows with it")
+    max_new_tokens: int = Field(2048, ge=1)
+    reports_at_once: int = Field(1, ge=1, le=64, description="reports in one batch; halved when memory runs out")
+    threads: int | None = Field(None, ge=1, description="null: as llama.cpp decides")
+    gpu_layers: int = Field(0, ge=-1)
+    flash_attention: bool | None = Field(None, description="null: as llama.cpp decides")
+    truncate: bool = Field(False, description="cut a narrative that does not fit in the window")
+    always_ground: bool = Field(False, description="run the row without context for decoders that do not need it too")
+
+    _lock: threading.Lock = PrivateAttr(default_factory=threading.Lock)
+    _running: hf_run.RunningModel | None = PrivateAttr(default=None)
+    _answers: EarlierAnswers = PrivateAttr(default_factory=EarlierAnswers)
+
+    @field_validator("model")
+    @classmethod
+    def _names_a_file(cls, name: str) -> str:
+        if not hf_gguf.is_gguf(name):
+            raise ValueError(f"{name!r} names no .gguf file; folders and ids of transformers run by backbone hf_vision")
+        return name
+
+    @property
+    def stamp(self) -> str:
+        """Fingerprint of the file; empty where it is not there."""
+        return hf_gguf.digest(self.model)
+
+    def load(self) -> None:
+        """Opens the file now instead of at the first question."""
+        self._started()
+
+    def offers(self, decoder: Decoder) -> tuple[str, ...]:
+        """What this machine lacks for the file, else memory and seconds to expect. Raises ConfigError for no file."""
+        from plugins.backbone.llama import machine
+
+        if lines := machine.lacks(self.model):
+            return lines
+        rows = 1 + (decoder.reads_prior() or self.always_ground)
+        return machine.expectation(self.model, self.window, self.reports_at_once, rows, self.gpu_layers)
+
+    def weights_gb(self) -> float | None:
+        """Memory of packed weights, keys and values, decimal GB."""
+        from plugins.backbone.llama import machine
+
+        return machine.weights_gb(self.model, self.window, self.reports_at_once)
+
+    def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
+        """Answers a query; blocks until the token loop has finished the answer.
+
+        Raises InvalidOutput (nothing valid fits), BadInput (the prompt exceeds the window), ConfigError or MissingTool
+        (the file cannot be opened, or the decoder contrasts pictures).
+        """
+        running = self._started()
+        about = subject(context, query)
+        before, ids = self._answers.before(about, query)
+        prior = self._contrasted(context, query, decoder)
+        call = hf_run.Call(
+            with_context=with_previous(parts(context, query), before),
+            without_context=with_previous(prior, before) if prior else None,
+            schema=query.answer_schema,
+            policy=decoder,
+            seed=seed,
+            max_new_tokens=self.max_new_tokens,
+            draft=ids,
+            truncate=self.truncate,
+        )
+        generation, ids = running.answer(call)
+        self._answers.note(about, generation.text, ids)
+        return generation
+
+    def _contrasted(self, context: Context, query: Query, decoder: Decoder) -> Parts | None:
+        if not (decoder.reads_prior() or self.always_ground):
+            return None
+        other = decoder.contrast_context(context)
+        if other is not None and other.narrative == context.narrative:
+            raise ConfigError(
+                f"decoder {type(decoder).__name__} contrasts pictures, which backbone 'llama_cpp' does not show; use "
+                "decoder 'cad', or backbone 'hf_vision'"
+            )
+        return parts(other, query)
+
+    def _started(self) -> hf_run.RunningModel:
+        from plugins.backbone.llama import run
+
+        fields = run.Fields(self.window, self.reports_at_once, self.threads, self.gpu_layers, self.flash_attention)
+        with self._lock:
+            if self._running is None or self._running.engine.ended:
+                self._running = None
+                self._running = run.shared(self.model, self.stamp, fields)
+            return self._running
