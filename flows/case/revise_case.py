@@ -46,6 +46,7 @@ from sgcad_core.revision.file import (
     write_edits,
 )
 from sgcad_core.revision.finding_fields import findings_by_field
+from sgcad_core.system import temp_folders
 from sgcad_core.system.report_files import facts_file, read_regular
 from sgcad_core.system.yaml_faults import YAML_FAULTS
 
@@ -249,6 +250,7 @@ def _written(
     check_revision(case.former, result, findings, [e for e in after if e.field in new], undoing=not new)
     if not wanted():
         raise WrongEdit(f"{case.folder.name}: this change is not waited for any more; nothing was changed")
+    temp_folders.remove_leftover_folders()  # of an edit that was killed
     with both_or_neither(case.file, case.folder):
         write_edits(case.file, after, report_digest(case.source))
         digest = find_cases.digest_of(case.case, case.config)
