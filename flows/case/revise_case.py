@@ -168,6 +168,7 @@ def revise(
     started = time.perf_counter()
     case = opened(folder, report)
     new = _edits(edits, who, why)
+    temp_folders.remove_leftover_folders()  # of an edit that was killed
     with facts_lock(case.source):
         settle(case.file)
         before = _unchanged(case.edits(), seen)
@@ -181,6 +182,7 @@ def undo(folder: Path, *, seen: str | None = None, report: Path | None = None, w
     """Undo the last revision of a case's report, by any author. Raises WrongEdit where there is none."""
     started = time.perf_counter()
     case = opened(folder, report)
+    temp_folders.remove_leftover_folders()  # of an edit that was killed
     with facts_lock(case.source):
         settle(case.file)
         before = _unchanged(case.edits(), seen)
@@ -250,7 +252,6 @@ def _written(
     check_revision(case.former, result, findings, [e for e in after if e.field in new], undoing=not new)
     if not wanted():
         raise WrongEdit(f"{case.folder.name}: this change is not waited for any more; nothing was changed")
-    temp_folders.remove_leftover_folders()  # of an edit that was killed
     with both_or_neither(case.file, case.folder):
         write_edits(case.file, after, report_digest(case.source))
         digest = find_cases.digest_of(case.case, case.config)

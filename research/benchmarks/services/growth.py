@@ -59,9 +59,12 @@ def cases(folder: Path, count: int, cheap: bool = False) -> None:
         if case.is_dir():
             continue
         case.mkdir(parents=True)
-        made = bundled[number // 10 % len(bundled)].read_text(encoding="utf-8") if number % 10 == 0 else _made(number)
-        untold = cheap and number % 10 != 1
-        (case / "report.txt").write_text(f"Nothing is known of day {number}." if untold else made, encoding="utf-8")
+        text = f"Nothing is known of day {number}." if cheap and number % 10 != 1 else _text(number, bundled)
+        (case / "report.txt").write_text(text, encoding="utf-8")
+
+
+def _text(number: int, bundled: Sequence[Path]) -> str:
+    return bundled[number // 10 % len(bundled)].read_text(encoding="utf-8") if number % 10 == 0 else _made(number)
 
 
 def _made(number: int) -> str:
