@@ -69,6 +69,7 @@ def test_a_pdf_of_a_narrative_is_read(tmp_path):
     ("content", "pages", "match"),
     [
         (b" " * 4_000_000, 60, r"hold more than 8,000,000 bytes of drawing"),
+        (b" " * 4_000_000, 1, r"bytes of drawing, or blanks"),
         (b"q Q " * (MAX_DRAWN // 2 + 1), 1, r"draws more than 100,000 things"),
         (b"BT /F1 12 Tf " + b"(" + b"word " * 30_000 + b") Tj ET", 2, r"more than 100,000 characters"),
     ],
