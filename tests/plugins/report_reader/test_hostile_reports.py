@@ -73,7 +73,7 @@ def test_a_pdf_of_a_narrative_is_read(tmp_path):
         (b"q Q " * (MAX_DRAWN // 2 + 1), 1, r"draws more than 100,000 things"),
         (b"BT /F1 12 Tf " + b"(" + b"word " * 30_000 + b") Tj ET", 2, r"more than 100,000 characters"),
     ],
-    ids=["shared stream", "many operators", "much text"],
+    ids=["shared stream", "blanks", "many operators", "much text"],
 )
 def test_a_pdf_that_draws_without_end_is_told_in_seconds(tmp_path, content, pages, match):
     started = time.process_time()
