@@ -133,7 +133,9 @@ def test_a_module_is_parsed_once_for_all_its_entry_points_and_again_where_it_cha
     monkeypatch.syspath_prepend(str(tmp_path))
     (file := tmp_path / "many_kit.py").write_text("class There: ...\n")
     parsed = []
-    monkeypatch.setattr(entry_points.ast, "parse", lambda text, parse=entry_points.ast.parse: (parsed.append(text), parse(text))[1])
+    monkeypatch.setattr(
+        entry_points.ast, "parse", lambda text, parse=entry_points.ast.parse: (parsed.append(text), parse(text))[1]
+    )
     points = [EntryPoint(f"p{n}", "many_kit:There", "sgcad.decoder") for n in range(300)]
     assert not any(map(entry_points.point_fault, points))
     assert len(parsed) == 1

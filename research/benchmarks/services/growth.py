@@ -6,8 +6,8 @@ bundled one under a new name). Every two seconds it is looked at: cases done, re
 command, of its worker processes and of Prefect's server, sizes of both databases. Each slope per case is fitted to the
 means of twenty equal spans of cases behind the first tenth, so that looks that follow each other do not count as many;
 the interval is 95 % (Student's t). `--place` keeps the folder; called again there, the batch goes on and later looks
-are added, told apart by the process they were made of. `--cheap`: the rules without SUMO and its checks, and nine reports of
-ten that tell no crash and are refused: more cases in the time, each of them tracked like any other.
+are added, told apart by the process they were made of. `--cheap`: the rules without SUMO
+and its checks, and nine reports of ten that tell no crash and are refused: more cases in the time, each tracked as any.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Maps of tiny roads with hundreds of ways on: which is straightest is looked for once."""
 
 from research.benchmarks.attack.scenario_words import geometry, network, road
-from sgcad_core.formats.openscenario.roads.way import LanePlace
 from sgcad_core.formats.openscenario.roads.road_network import XodrRoads
+from sgcad_core.formats.openscenario.roads.way import LanePlace
 
 COUNT, LENGTH_M = 150, 0.001
 
@@ -29,5 +29,7 @@ def test_a_second_drive_over_the_same_roads_looks_at_no_choice_again():
     again = roads.drive(place, 1)
     assert (again.points == first.points).all()
     more = roads.budget.counts["points looked at"] - spent
-    assert spent - more == 150 * (COUNT + 1)  # of each of the two kinds of place once: the junction's ways, the way back
+    assert spent - more == 150 * (
+        COUNT + 1
+    )  # of each of the two kinds of place once: the junction's ways, the way back
     assert more < spent
