@@ -11,7 +11,7 @@ import sys
 import warnings
 from collections import defaultdict
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from importlib.machinery import ModuleSpec
 from importlib.metadata import Distribution, EntryPoint, distributions
 from pathlib import Path
@@ -95,17 +95,28 @@ def point_fault(point: EntryPoint) -> str:
 def _source_fault(file: Path, attribute: str) -> str:
     """What is wrong with a module that should define a name."""
     try:
-        if file.stat().st_size > MAX_SOURCE:
+        about = file.stat()
+        if about.st_size > MAX_SOURCE:
             return ""
-        text = file.read_text(encoding="utf-8")
+        wrong, names = _defined(file, about.st_mtime_ns, about.st_size, about.st_ino)
     except DAMAGED as fault:
         return f"cannot be read ({fault})"
+    return wrong or ("" if attribute in names else GONE)
+
+
+@lru_cache(maxsize=1024)
+def _defined(file: Path, changed_ns: int, size: int, inode: int) -> tuple[str, frozenset[str]]:
+    """What is wrong with a module's source, and the names it defines; hundreds of entry points may lead to one file.
+
+    Raises what DAMAGED names. All but `file` tell one state of it from the next.
+    """
+    text = file.read_text(encoding="utf-8")
     try:
         with warnings.catch_warnings(action="ignore"):  # of a stranger's source
             tree = ast.parse(text)
     except (*DAMAGED, SyntaxError, RecursionError, MemoryError) as fault:
-        return f"is no Python that can be parsed ({type(fault).__name__}: {str(fault)[:100]})"
-    return "" if attribute in _names(tree) else GONE
+        return f"is no Python that can be parsed ({type(fault).__name__}: {str(fault)[:100]})", frozenset()
+    return "", frozenset(_names(tree))
 
 
 def _spec(module: str) -> ModuleSpec | None:

@@ -26,8 +26,13 @@ from flows.batch.plan_batch import Job
 
 AHEAD = 2
 """Jobs that a pool has for each of its workers: one waits when one ends, and few are lost with a pool."""
+UNSEEN = 32
+"""Outcomes that may wait for whoever follows the lanes; then the lanes wait, so that a long batch takes no more memory
+than a short one."""
 ALONE = 2
 """Tries of a job in a pool of its own, after a pool was lost with it."""
+LOOK_S = 0.2
+"""So often a lane that waits looks whether the batch was stopped."""
 
 
 @dataclass(frozen=True)
@@ -116,8 +121,15 @@ def parted(jobs: Sequence[Job], wanted: Callable[[Job], object]) -> tuple[list[J
 def through(lanes: Sequence[Lane], stop: Stop) -> Iterator[tuple[Job, Any]]:
     """Each job with its outcome, as they end, or its fault raised."""
     arrived: queue.SimpleQueue[tuple[Job, Any] | BaseException | None] = queue.SimpleQueue()
+    room = threading.Semaphore(UNSEEN)
+
+    def put(one: Any) -> None:
+        while isinstance(one, tuple) and not stop.asked.is_set() and not room.acquire(timeout=LOOK_S):
+            pass
+        arrived.put(one)
+
     threads = [
-        threading.Thread(target=copy_context().run, args=(_work, lane, arrived.put, stop), daemon=True)
+        threading.Thread(target=copy_context().run, args=(_work, lane, put, stop), daemon=True)
         for lane in lanes
         if lane.jobs
     ]
@@ -132,6 +144,7 @@ def through(lanes: Sequence[Lane], stop: Stop) -> Iterator[tuple[Job, Any]]:
                 raise fault
             case tuple() as ended:
                 yield ended
+                room.release()
     for thread in threads:
         thread.join()
 

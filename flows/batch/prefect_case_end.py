@@ -19,6 +19,7 @@ from prefect import task
 from prefect.cache_policies import NO_CACHE
 from prefect.client.orchestration import get_client
 from prefect.client.schemas.objects import State
+from prefect.context import FlowRunContext
 from prefect.settings import PREFECT_API_URL, PREFECT_UI_URL
 from prefect.states import Completed, Failed
 from prefect.utilities.engine import link_state_to_task_run_result
@@ -117,11 +118,25 @@ def _tracked_as_task(job: Job, ending: Ending, case: State[Any]) -> str:
     ended = Held((job, ending))
     link_state_to_task_run_result(case, ended)  # not `wait_for`, which lets no refused case be tracked
     state = track(job.name, ended, return_state=True)
+    _forget(ended)
     if state.name == "Untracked":
         return str(state.message)
     if state.is_failed() or state.is_crashed():
         state.result()
     return ""
+
+
+def _forget(ended: Held[Any]) -> None:
+    """Drop what Prefect keeps for a whole flow run, in case another task takes it: the links to `ended` and to results
+    that are gone, and empty sets of assets."""
+    if not (around := FlowRunContext.get()):
+        return
+    for identity, (_, _, result) in list(around.run_results.items()):
+        if result and ((one := result()) is None or one is ended):
+            around.run_results.pop(identity, None)
+    for run, assets in list(around.task_run_assets.items()):
+        if not assets:
+            around.task_run_assets.pop(run, None)
 
 
 @contextmanager

@@ -46,6 +46,7 @@ from sgcad_core.revision.file import (
     write_edits,
 )
 from sgcad_core.revision.finding_fields import findings_by_field
+from sgcad_core.system import temp_folders
 from sgcad_core.system.report_files import facts_file, read_regular
 from sgcad_core.system.yaml_faults import YAML_FAULTS
 
@@ -167,6 +168,7 @@ def revise(
     started = time.perf_counter()
     case = opened(folder, report)
     new = _edits(edits, who, why)
+    temp_folders.remove_leftover_folders()  # of an edit that was killed
     with facts_lock(case.source):
         settle(case.file)
         before = _unchanged(case.edits(), seen)
@@ -180,6 +182,7 @@ def undo(folder: Path, *, seen: str | None = None, report: Path | None = None, w
     """Undo the last revision of a case's report, by any author. Raises WrongEdit where there is none."""
     started = time.perf_counter()
     case = opened(folder, report)
+    temp_folders.remove_leftover_folders()  # of an edit that was killed
     with facts_lock(case.source):
         settle(case.file)
         before = _unchanged(case.edits(), seen)

@@ -21,8 +21,11 @@ from sgcad_core.system.report_files import read_regular
 MAX_PAGES = 60
 MAX_DRAWN_BYTES = 8_000_000
 """Limit of the uncompressed drawing of all pages: a page of text has 20 kB, a scene diagram some 200 kB."""
+MAX_BLANK_BYTES = 3_000_000
+"""Limit of the white space within it, a fourth of a true drawing; it is read byte by byte, 3 MB in a second."""
 MAX_DRAWN = 100_000
 """Limit of the drawing operators of all pages; a repeated drawing counts each time. So many take 1.5 s."""
+WHITE = b"\0\t\n\f\r "
 MAX_DAMAGED_BYTES = 200_000
 """Of a damaged compressed stream, which is read byte by byte: 1 MB takes a second."""
 MAX_PALETTE_BYTES = 10_000
@@ -75,7 +78,7 @@ def _bounded() -> AbstractContextManager[object]:
 def _text(pages: list, source: Path) -> str:  # type: ignore[type-arg]
     """The text layer of all pages. Raises BadInput if the pages draw more than a report does."""
     found: list[str] = []
-    drawn = drawn_bytes = 0
+    drawn = drawn_bytes = blank_bytes = 0
 
     def count(*_: object) -> None:
         nonlocal drawn
@@ -85,9 +88,11 @@ def _text(pages: list, source: Path) -> str:  # type: ignore[type-arg]
 
     for page in pages:
         contents = page.get_contents()
-        drawn_bytes += len(contents.get_data()) if contents is not None else 0
-        if drawn_bytes > MAX_DRAWN_BYTES:
-            raise BadInput(f"{source}: its pages hold more than {MAX_DRAWN_BYTES:,} bytes of drawing: "
+        data = contents.get_data() if contents is not None else b""
+        drawn_bytes += len(data)
+        blank_bytes += len(data) - len(data.translate(None, WHITE))
+        if drawn_bytes > MAX_DRAWN_BYTES or blank_bytes > MAX_BLANK_BYTES:
+            raise BadInput(f"{source}: its pages hold more than {MAX_DRAWN_BYTES:,} bytes of drawing, or blanks: "
                            "print the report's pages to a new PDF")  # fmt: skip
         found.append(page.extract_text(visitor_operand_before=count))
         if sum(map(len, found)) > 2 * MAX_NARRATIVE:  # spaces are stripped yet

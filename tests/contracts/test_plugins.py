@@ -127,6 +127,22 @@ def test_only_entry_points_that_lead_somewhere_are_installed(monkeypatch, tmp_pa
     assert {name for name, point in points.items() if not entry_points.point_fault(point)} == {"there"}
 
 
+def test_a_module_is_parsed_once_for_all_its_entry_points_and_again_where_it_changed(monkeypatch, tmp_path):
+    from importlib.metadata import EntryPoint
+
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (file := tmp_path / "many_kit.py").write_text("class There: ...\n")
+    parsed = []
+    monkeypatch.setattr(
+        entry_points.ast, "parse", lambda text, parse=entry_points.ast.parse: (parsed.append(text), parse(text))[1]
+    )
+    points = [EntryPoint(f"p{n}", "many_kit:There", "sgcad.decoder") for n in range(300)]
+    assert not any(map(entry_points.point_fault, points))
+    assert len(parsed) == 1
+    file.write_text("class Elsewhere: ...\n")
+    assert entry_points.point_fault(points[0]) == entry_points.GONE
+
+
 def test_a_strangers_code_is_part_of_its_identity_and_ours_is_not(monkeypatch, tmp_path):
     monkeypatch.syspath_prepend(str(tmp_path))
     seen = []

@@ -56,6 +56,8 @@ def unlinked(folder: Path) -> list[str]:
 
 def unlogged(database: Path, cases: dict[str, int]) -> list[str]:
     """What is wrong with MLflow's runs: every case of a config once, every config's run FINISHED."""
+    if not database.is_file():
+        return [f"there is no {database.name}"]
     with closing(sqlite3.connect(f"file:{database}?mode=ro", uri=True)) as found:
         asked = (
             "SELECT c.value, l.value, r.status FROM runs r JOIN tags l ON l.run_uuid = r.run_uuid AND "

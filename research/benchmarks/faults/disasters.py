@@ -219,4 +219,4 @@ def _meddled(meddle: Callable[[Undisturbed, Path], meddling.Seen]) -> Callable[[
 
 DISASTERS: dict[str, Callable[[Undisturbed, Path], Happened]] = {
     f.__name__: f for f in (disk, readonly, locked, netconvert, worker, prefect, memory)
-} | {f.__name__: _meddled(f) for f in (meddling.moved, meddling.edited, meddling.between)}
+} | {f.__name__: _meddled(f) for f in (meddling.moved, meddling.edited, meddling.between, meddling.desk)}

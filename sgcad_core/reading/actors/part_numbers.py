@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from sgcad_core.reading.actors.references import Numbering, has_actor_numbers, numbered
 from sgcad_core.reading.actors.unnumbered_actors import Actor, NamedActors, Phrase
@@ -41,6 +42,7 @@ def _cast(text: str) -> NamedActors | None:
     return NamedActors([*unnamed, *actors], automated, taken)
 
 
+@lru_cache(maxsize=1)  # one report is asked about twice
 def _told(text: str) -> tuple[int, bool, frozenset[int]] | None:
     """The subject's number, whether it has words of its own, and the numbers in a text; None as for `_cast`."""
     taken = frozenset(int(m.group()[1:]) for m in _NUMBER.finditer(text))

@@ -68,8 +68,9 @@ def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
     text = plain(statement, roster)
     found: list[ContactMention] = []
     starts = subject_starts(statement._replace(text=text), roster)
+    parts = list(rule("contact_words.both_parts").finditer(text))
     for m in HIT.finditer(text):
-        if any(p.start() < m.start() <= p.end() for p in rule("contact_words.both_parts").finditer(text)):
+        if any(p.start() < m.start() <= p.end() for p in parts):
             continue
         mention = _contact_mention(statement, text, m, starts, roster)
         if mention:

@@ -7,15 +7,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from functools import cache
 from typing import NamedTuple
 
 from sgcad_core.reading.actors.numbered_walkers import called_by_word
 from sgcad_core.reading.actors.part_numbers import number_the_rest
 from sgcad_core.reading.actors.references import number_actors, number_cyclists, number_parked
-from sgcad_core.reading.language import of_role, rule, values
+from sgcad_core.reading.language import Rule, of_role, rule, values
 from sgcad_core.reading.text.report_styles import in_third_person, named_in_full
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, Role, role_of
-from sgcad_core.reading.text.traced_text import TracedText, joined
+from sgcad_core.reading.text.traced_text import Fill, TracedText, joined
 from sgcad_core.reading.text.typos import mended
 
 __all__ = [
@@ -91,34 +93,64 @@ def _blocks(text: TracedText) -> list[TracedText]:
 
 
 def _paragraph(block: TracedText) -> TracedText:
-    once = _spell(mended(_spaces(block)))
+    idle: Idle = {}
+    once = _through(mended(_through(block, _spaces(), {})), _spelling(), idle)
     for _ in range(4):
-        again = _spell(once)
+        again = _through(once, _spelling(), idle)
         if again.text == once.text:
             break
         once = again
     return once
 
 
-def _spell(text: TracedText) -> TracedText:
-    text = _spaces(text).sub(rule("text.typo"), _mend_typo)
-    for spelling in of_role("spelling"):
-        text = text.sub(spelling, spelling.yields["to"])
-    text = text.sub(rule("text.spoken_speed"), lambda m: str(values("spoken_speed")[m.group().lower()]))
-    text = text.sub(rule("text.first_vehicle"), "V1")
-    text = text.sub(rule("text.lettered"), lambda m: f"V{ord(m.group(1)) - ord('A') + 1}")
-    text = text.sub(rule("text.lettered_driver"), lambda m: f"the driver of V{ord(m.group(1)) - ord('A') + 1}")
-    text = text.sub(rule("text.vehicle_word"), lambda m: f"V{NUMBERS[m.group(1).lower()]}")
-    text = text.sub(rule("text.vehicle_case"), r"V\1").sub(rule("text.counted_lane"), _mend_lanes)
-    return _spaces(text)
+Step = tuple[Rule, str | Fill] | None
+"""A rule and what is written for its matches; None: the spaces at either end go."""
+Idle = dict[int, str]
+"""By a step's number: a text that it leaves as it is. What comes again so is not looked at again."""
 
 
-def _spaces(text: TracedText) -> TracedText:
+def _through(text: TracedText, steps: Sequence[Step], idle: Idle) -> TracedText:
+    for place, step in enumerate(steps):
+        if idle.get(place) == text.text:
+            continue
+        changed = text.sub(*step) if step else text.strip()
+        if changed.text == text.text:
+            idle[place] = text.text
+        text = changed
+    return text
+
+
+@cache
+def _spelling() -> tuple[Step, ...]:
+    return (
+        *_spaces(),
+        (rule("text.typo"), _mend_typo),
+        *((spelling, str(spelling.yields["to"])) for spelling in of_role("spelling")),
+        (rule("text.spoken_speed"), lambda m: str(values("spoken_speed")[m.group().lower()])),
+        (rule("text.first_vehicle"), "V1"),
+        (rule("text.lettered"), lambda m: f"V{ord(m.group(1)) - ord('A') + 1}"),
+        (rule("text.lettered_driver"), lambda m: f"the driver of V{ord(m.group(1)) - ord('A') + 1}"),
+        (rule("text.vehicle_word"), lambda m: f"V{NUMBERS[m.group(1).lower()]}"),
+        (rule("text.vehicle_case"), r"V\1"),
+        (rule("text.counted_lane"), _mend_lanes),
+        *_spaces(),
+    )
+
+
+@cache
+def _spaces() -> tuple[Step, ...]:
     """Single spaces, one full stop at a time, a space behind it and behind commas."""
-    text = text.sub(rule("common.space"), " ").sub(rule("text.full_stops"), ".")
-    text = text.sub(rule("text.space_before_mark"), r"\1").sub(rule("text.glued_sentence"), ". ")
-    text = text.sub(rule("text.glued_comma"), ", ").sub(rule("text.glued_bracket"), " (")
-    return text.sub(rule("text.glued_behind_bracket"), ") ").sub(rule("text.spaces"), " ").strip()
+    return (
+        (rule("common.space"), " "),
+        (rule("text.full_stops"), "."),
+        (rule("text.space_before_mark"), r"\1"),
+        (rule("text.glued_sentence"), ". "),
+        (rule("text.glued_comma"), ", "),
+        (rule("text.glued_bracket"), " ("),
+        (rule("text.glued_behind_bracket"), ") "),
+        (rule("text.spaces"), " "),
+        None,
+    )
 
 
 def _mend_typo(match: re.Match[str]) -> str:

@@ -41,8 +41,12 @@ class TracedText(NamedTuple):
 
     def sub(self, pattern: Pattern, to: str | Fill, count: int = 0) -> TracedText:
         """`pattern.sub(to, text, count)`; of a match only what really changes loses its own place."""
-        fill = _filling(to) if isinstance(to, str) else to
-        edits = [(m.start(), m.end(), new) for m in _matches(pattern, self.text, count) if (new := fill(m)) != m[0]]
+        found = _matches(pattern, self.text, count)
+        if isinstance(to, str) and "\\" not in to:  # every space of a text
+            edits = [(m.start(), m.end(), to) for m in found if m[0] != to]
+        else:
+            fill = _filling(to) if isinstance(to, str) else to
+            edits = [(m.start(), m.end(), new) for m in found if (new := fill(m)) != m[0]]
         return self._edited(edits) if edits else self
 
     def _edited(self, edits: Iterable[tuple[int, int, str]]) -> TracedText:

@@ -75,6 +75,20 @@ def test_a_case_is_the_same_wherever_it_runs(work, config_file, workers):
     assert {run["tags"][0] for run in runs["road[1]"]} == {"gpu"}
 
 
+def test_prefect_keeps_nothing_of_a_case_that_is_tracked(tmp_path, reports, config_file):
+    from prefect.context import FlowRunContext
+
+    made = batch_of(cases_in([reports(a="", b="", c="")]), [config_file()], tmp_path / "out", jobs=2)
+    kept = []
+
+    def look(*_):
+        around = FlowRunContext.get()
+        kept.append((len(around.run_results), len(around.task_run_assets)))
+
+    run_batch.evaluate(made.shown("stage", "processes"), look)
+    assert kept == [(0, 0)] * 3
+
+
 def test_a_batch_in_less_detail_has_one_task_a_case(work, config_file):
     endings, runs = work(config_file(), detail="case", a="", b="REPAIR")
     assert {name: result["status"] for name, result in endings.items()} == {"a": "generated", "b": "exhausted"}

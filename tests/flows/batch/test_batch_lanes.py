@@ -1,6 +1,7 @@
 """Jobs through pools: every job ends once, whatever its pool does."""
 
 import threading
+import time
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -10,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flows.batch.lanes import Death, Lane, Stop, open_threads, through
+from flows.batch.lanes import LOOK_S, UNSEEN, Death, Lane, Stop, open_threads, through
 
 
 def jobs(count):
@@ -99,3 +100,37 @@ def test_what_was_lost_with_a_pool_is_told():
     list(through([lane], Stop()))
     assert lost
     assert set(lost) == {BrokenProcessPool}
+
+
+def test_lanes_wait_where_nobody_takes_what_they_did():
+    pools, held = Pools(), jobs(UNSEEN * 4)
+    begun = []
+    lane = Lane(held, 2, open_counting(pools, begun))
+    ended = through([lane], Stop())
+    next(ended)
+    deadline = time.monotonic() + 5
+    while len(begun) <= UNSEEN and time.monotonic() < deadline:
+        time.sleep(0.01)
+    time.sleep(3 * LOOK_S)
+    assert UNSEEN <= len(begun) <= UNSEEN + 2 * lane.ahead * lane.width
+    assert len(list(ended)) == len(held) - 1
+
+
+def test_a_lane_that_waits_ends_where_the_batch_is_stopped():
+    stop, begun = Stop(), []
+    ended = through([Lane(jobs(UNSEEN * 4), 2, open_counting(Pools(), begun))], stop)
+    next(ended)
+    time.sleep(2 * LOOK_S)
+    stop.ask()
+    assert len(list(ended)) < UNSEEN * 2
+
+
+def open_counting(pools, begun):
+    """Pools whose jobs are noted as they are handed in."""
+
+    @contextmanager
+    def open(width):
+        with pools.open(width) as submit:
+            yield lambda job: (begun.append(job), submit(job))[1]
+
+    return open

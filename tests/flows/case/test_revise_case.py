@@ -110,6 +110,14 @@ def test_an_edit_stands_in_every_file_and_is_a_persons(case):
     assert [(e.who, e.why) for e in read_edits(source_of(case) / "facts.yaml")] == [("ann", "drawn so")] * 2
 
 
+def test_an_edit_removes_what_a_killed_one_left_in_the_temporary_folder(case, tmp_path, monkeypatch):
+    (left := tmp_path / "temporary" / "sgcad-temp-net-abcdefgh").mkdir(parents=True)
+    (left / "lock").touch()
+    monkeypatch.setattr("tempfile.tempdir", str(left.parent))
+    revise_case.revise(case, {"roads.N.lanes_forward": "1"})
+    assert not left.exists()
+
+
 def test_any_edits_undone_give_the_first_result_byte_for_byte(case):
     first = left(case)
     revise_case.revise(case, {"roads.N.lanes_forward": 2})

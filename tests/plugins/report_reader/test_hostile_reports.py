@@ -69,10 +69,11 @@ def test_a_pdf_of_a_narrative_is_read(tmp_path):
     ("content", "pages", "match"),
     [
         (b" " * 4_000_000, 60, r"hold more than 8,000,000 bytes of drawing"),
+        (b" " * 4_000_000, 1, r"bytes of drawing, or blanks"),
         (b"q Q " * (MAX_DRAWN // 2 + 1), 1, r"draws more than 100,000 things"),
         (b"BT /F1 12 Tf " + b"(" + b"word " * 30_000 + b") Tj ET", 2, r"more than 100,000 characters"),
     ],
-    ids=["shared stream", "many operators", "much text"],
+    ids=["shared stream", "blanks", "many operators", "much text"],
 )
 def test_a_pdf_that_draws_without_end_is_told_in_seconds(tmp_path, content, pages, match):
     started = time.process_time()

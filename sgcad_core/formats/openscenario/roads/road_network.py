@@ -51,6 +51,7 @@ class XodrRoads:
 
     def __init__(self, xodr: str) -> None:
         self._xodr, self._book = xodr, FileContext()
+        self._straightest: dict[Step, Step | None] = {}
 
     @property
     def budget(self) -> Budget:
@@ -270,12 +271,15 @@ class XodrRoads:
         return rows[:: step.sense]
 
     def _next(self, step: Step, route: Route | None) -> Step | None:
-        """The lane one drives into next: the route's, else the straightest."""
+        """The lane one drives into next: the route's, else the straightest, which is looked for once."""
+        if not route and step in self._straightest:
+            return self._straightest[step]
         options = self._links.ahead(step)
         self._root.spend("points looked at", 150 * len(options))
         if route and len(options) > 1:
             options = self._onto(options, route.legs_after(step.road)) or options
-        return min(options, key=self._turn, default=None)
+        taken = min(options, key=self._turn, default=None)
+        return taken if route else self._straightest.setdefault(step, taken)
 
     def _onto(self, options: list[Step], ahead: Sequence[Leg]) -> list[Step]:
         """The options that a route takes: onto its next road, or over a neighbour of it onto the one behind."""

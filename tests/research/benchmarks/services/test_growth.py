@@ -52,3 +52,9 @@ def test_cases_are_reports_that_differ(tmp_path):
     texts = [file.read_text() for file in sorted(tmp_path.glob("*/report.txt"))]
     assert len(set(texts)) == 12
     assert all(len(text) > 100 for text in texts)
+
+
+def test_of_cheap_cases_one_in_ten_tells_a_crash(tmp_path):
+    cases(tmp_path, 20, cheap=True)
+    told = [len(file.read_text()) > 100 for file in sorted(tmp_path.glob("*/report.txt"))]
+    assert told == [number % 10 == 1 for number in range(20)]
