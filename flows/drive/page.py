@@ -56,7 +56,9 @@ def _told(told: Mapping[str, Any]) -> dict[str, Any]:
     found = [RuleFinding.model_validate(one) for one in told["rules"]]
     rows = [{"status": f.status, "ego": f.actor == told["ego"], "text": f.words()} for f in found if f.status != "kept"]
     ego, kept = told["ego"], any(f.status == "kept" and f.actor == told["ego"] for f in found)
-    return {"outcome": told["outcome"], "reason": told["reason"], "ego": ego, "kept": kept, "rules": rows}
+    hit = (told.get("traffic") or {}).get("touched") or []
+    reason = told["reason"] + (f", but for {', '.join(hit)} of the replayed traffic" if hit else "")
+    return {"outcome": told["outcome"], "reason": reason, "doubt": bool(hit), "ego": ego, "kept": kept, "rules": rows}
 
 
 def _words(told: Mapping[str, Any]) -> str:

@@ -122,7 +122,7 @@
   if (driven) {                                          // of a drive: did it avoid the crash, and what rules did it cost
     const own = driven.rules.filter((r) => r.ego && r.status === "broken");
     verdict.textContent = `${driven.outcome}: ${driven.reason}` + (own.length ? ` · breaks ${own.length === 1 ? "a rule" : `${own.length} rules`}` : "");
-    verdict.className = driven.outcome === "avoided" ? (own.length ? "" : "good") : ["unchanged", "worse"].includes(driven.outcome) ? "bad" : "";
+    verdict.className = driven.outcome === "avoided" ? (own.length || driven.doubt ? "" : "good") : ["unchanged", "worse"].includes(driven.outcome) ? "bad" : "";
     $("rulecard").hidden = false;
     for (const r of driven.rules) row($("rules"), [make("td", r.status, { className: r.status === "broken" ? "no" : "" }), r.text]);
     if (!own.length) row($("rules"), [make("td", "kept"), driven.kept ? `${driven.ego}: every rule that the map tells of` : "the map tells of no rule here"]);

@@ -76,6 +76,13 @@ def test_esmini_script_gives_the_ego_the_wanted_driver(made, tmp_path):
     assert 'name="EgoController" parameterType="string" value="ACCController"' in told
 
 
+def test_esmini_script_names_the_missing_binary(made):
+    ended = subprocess.run(["sh", made / "run_esmini.sh"], env={"ESMINI": "/no/such", "PATH": "/usr/bin:/bin"},
+                           capture_output=True, text=True, check=False)  # fmt: skip
+    assert ended.returncode == 127
+    assert "/no/such: no esmini there; name its binary: ESMINI=/path/to/esmini" in ended.stderr
+
+
 def test_scenario_names_its_source_date_and_assumptions(made):
     text = (made / "scenario.xosc").read_text()
     header = parse_xml(text, "made").find("FileHeader")
@@ -278,6 +285,7 @@ def test_a_drive_replays_the_traffic_and_tells_whom_the_ego_touches(among):
         page = (file.parent / "drive.html").read_text()
         assert '"traffic1"' in page
         assert f"Gray: {count} vehicles of traffic, replayed" in page
+        assert ('"doubt": true' in page or '"doubt":true' in page) == bool(told["touched"])
 
 
 def test_what_leaves_the_traffic_out_says_so(among):
