@@ -27,7 +27,7 @@ ALIKE = 0.5
 
 
 def wrong_side(scene: RuleScene) -> Iterator[RuleFinding]:
-    """Each stretch on lanes of the other direction in which nobody is passed; or that there is none."""
+    """Each stretch on lanes of the other direction without a vehicle that is passed; or that there is none."""
     for mover in scene.movers:
         if not mover.lanes_bound or not _drives(scene, mover).any():
             continue
