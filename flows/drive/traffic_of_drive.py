@@ -23,7 +23,7 @@ def clock_s(drive: Drive, count: int) -> Floats:
 def replayed(drive: Drive, count: int) -> Background:
     """The script's traffic over so many rows of a drive; behind the end of the script it stays where it is."""
     at = clock_s(drive, count)
-    t_s: Floats = np.arange(count) * STEP_S
+    t_s: Floats = np.arange(count, dtype=np.float64) * STEP_S
     return tuple((info, _at(track, at, t_s)) for info, track in drive.staging.script.background)
 
 

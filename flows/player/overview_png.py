@@ -119,9 +119,9 @@ def _traffic(axes: Axes, view: View) -> None:
     boxes = []
     for info, track in view.traffic:
         at = contact.t_s if contact else float(track.t_s[-1]) / 2
-        k = int(min(np.searchsorted(track.t_s, at), len(track.t_s) - 1))
-        pose = (float(v) for v in track.pose[k])
-        boxes.append(corners(Box(*pose, info.length_m, info.width_m)))
+        k = min(int(np.searchsorted(track.t_s, at)), len(track.t_s) - 1)
+        x, y, heading = (float(v) for v in track.pose[k])
+        boxes.append(corners(Box(x, y, heading, info.length_m, info.width_m)))
     axes.add_collection(PolyCollection(boxes, facecolors=TRAFFIC_COLOR, edgecolors="white", linewidths=0.4, zorder=2.8))
 
 
