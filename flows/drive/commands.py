@@ -147,3 +147,5 @@ def vary(
         family = family_of(folder, _given(role_of or []))
         place = write_family(family, count, seed, partial(hardest, family, count, seed, look) if look else None)
         typer.echo(str(place))
+        if count_left := len(family.basis.script.background):
+            typer.echo(f"the {count_left} vehicles of its traffic are left out: a family varies the crash alone")

@@ -188,6 +188,7 @@ def _manifest(
         "members": [
             {"file": f"concrete/{number:04d}.xosc", "values": values} for number, (values, _) in enumerate(found, 1)
         ],
+        "traffic_left_out": len(script.background),
         "not_varied": unvaried(script, family.facts, family.parameters),
     }  # fmt: skip
 

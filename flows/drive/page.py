@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
+from flows.drive.traffic_of_drive import clock_s, replayed
 from flows.player import player_page
 from flows.player.player_data import COLORS, Mover, View
 from flows.player.road_shapes import drawing_of
 from flows.player.signals_shown import shown_by
-from sgcad_core.case.driver_io import STEP_S
-from sgcad_core.case.records import CrashReport, Execution, Floats
+from sgcad_core.case.records import CrashReport, Execution
 from sgcad_core.handover.after_contact import with_aftermath
 from sgcad_core.handover.drive import Drive
 from sgcad_core.result import CaseRecord
@@ -47,15 +45,10 @@ def _view(driven: Drive, told: Mapping[str, Any], movers: tuple[Mover, ...]) -> 
     change = {s["actor"]: round(s["delta_v_mps"], 3) for s in (hard["first"], hard["second"])} if hard else {}
     metrics = {"drive": figures} | ({"exact": {"delta_v_mps": change}} if change else {})
     runs, name = {SCRIPT: script.trajectories}, f"{told['driver']} drives {told['ego']}"
-    shown = shown_by(script.lights, _plan_s(driven, len(movers[0].track.t_s))) if script.lights else []
+    shown = shown_by(script.lights, clock_s(driven, len(movers[0].track.t_s))) if script.lights else []
     drawing = drawing_of(script.net_xml)
-    return View(record, report, metrics, result, drawing, movers, runs, name, SCRIPT, shown, _told(told))
-
-
-def _plan_s(driven: Drive, count: int) -> Floats:
-    """(n,) time of the signals' plan: that of the others, and on behind the contact."""
-    later = driven.others_s[-1] + np.arange(1, count - len(driven.others_s) + 1) * STEP_S
-    return np.concatenate((driven.others_s, later))
+    view = View(record, report, metrics, result, drawing, movers, runs, name, SCRIPT, shown, _told(told))
+    return view.among(replayed(driven, len(movers[0].track.t_s)))
 
 
 def _told(told: Mapping[str, Any]) -> dict[str, Any]:
@@ -63,7 +56,9 @@ def _told(told: Mapping[str, Any]) -> dict[str, Any]:
     found = [RuleFinding.model_validate(one) for one in told["rules"]]
     rows = [{"status": f.status, "ego": f.actor == told["ego"], "text": f.words()} for f in found if f.status != "kept"]
     ego, kept = told["ego"], any(f.status == "kept" and f.actor == told["ego"] for f in found)
-    return {"outcome": told["outcome"], "reason": told["reason"], "ego": ego, "kept": kept, "rules": rows}
+    hit = (told.get("traffic") or {}).get("touched") or []
+    reason = told["reason"] + (f", but for {', '.join(hit)} of the replayed traffic" if hit else "")
+    return {"outcome": told["outcome"], "reason": reason, "doubt": bool(hit), "ego": ego, "kept": kept, "rules": rows}
 
 
 def _words(told: Mapping[str, Any]) -> str:
@@ -81,5 +76,8 @@ def _words(told: Mapping[str, Any]) -> str:
         )
     if could.get("steer_by_s") is not None:
         lines.append(f"Moving aside to the {could['steer_to']} had to begin {could['steer_by_s']:.2f} s before it.")
+    if around := told.get("traffic"):
+        hit = f"; {told['ego']} touches {', '.join(around['touched'])}" if around["touched"] else ""
+        lines.append(f"Gray: {around['vehicles']} vehicles of traffic, replayed: they do not react to the driver{hit}.")
     lines.append(f"Least clearance {told['closest_m']:.2f} m. Dashed: the script.")
     return " ".join(lines)

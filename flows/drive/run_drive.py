@@ -19,6 +19,7 @@ from typing import Any, cast
 from flows.case_files import case_folder
 from flows.case_files.find_cases import code_digest
 from flows.drive.script_of_case import egos, script_of
+from flows.drive.traffic_of_drive import touched
 from sgcad_core.config import DriverEntry
 from sgcad_core.errors import SgcadError
 from sgcad_core.handover.avoidance import avoidance
@@ -107,6 +108,8 @@ def _drive_one(
     except SgcadError as fault:
         return about | {"outcome": "failed", "reason": str(fault)}
     about |= judge_drive(driven).model_dump(mode="json") | {"avoidance": told.avoidance}
+    if staging.script.background:
+        about |= {"traffic": {"vehicles": len(staging.script.background), "touched": touched(driven)}}
     about |= {"seconds": round(time.perf_counter() - started, 4)}
     _write_drive(driven, about | {"series": time_series(driven)}, target, order)
     return about

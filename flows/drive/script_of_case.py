@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from flows.case_files import case_folder
+from flows.case_files.case_traffic import traffic_in
 from sgcad_core.case.records import ActorInfo
 from sgcad_core.errors import BadInput, ConfigError
 from sgcad_core.formats.sumo.net_xml import parse_net
@@ -56,6 +57,7 @@ def script_of(folder: Path, role_of: Mapping[str, str] | None = None) -> Script:
             surface=_surface(result.get("facts", ())),
             net_xml=net_xml,
             xosc=_text(folder / "scenario.xosc"),
+            background=traffic_in(folder, result),
         )
     except (OSError, ValueError, KeyError, TypeError) as fault:
         raise BadInput(f"{folder}: no finished case that can be driven ({fault}); run it again") from fault

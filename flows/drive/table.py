@@ -39,6 +39,7 @@ class Tally:
         counts = self._counts.setdefault((told["driver"], told["role"]), Counter())
         counts.update(["n", told["outcome"], *rules])
         counts["breaks"] += bool(rules)
+        counts["traffic"] += bool((told.get("traffic") or {}).get("touched"))
         if told["as_declared"] is not None:
             counts.update({"declared": 1, "as_declared": int(told["as_declared"])})
 
@@ -64,6 +65,9 @@ def show(console: Console, tally: Tally) -> None:
     for row in tally.rows():
         if told := _told_rules(row):
             console.print(escape(f"{row['driver']}, {row['role']}: {told}"), soft_wrap=True)
+        if row["traffic"]:
+            told = f"{row['traffic']} of {row['n']} drives touch the replayed traffic"
+            console.print(escape(f"{row['driver']}, {row['role']}: {told}"), soft_wrap=True)
     for line in tally.faults:
         console.print(escape(line), soft_wrap=True)
     if tally.failed > len(tally.faults):
@@ -77,7 +81,9 @@ def _row(driver: str, role: str, counts: Mapping[str, int]) -> dict[str, Any]:
     for name in ("avoided", "mitigated"):
         low, high = wilson(row[name], n)
         row |= {f"{name}_share": row[name] / n, f"{name}_low": low, f"{name}_high": high}
-    row |= {"breaks": counts.get("breaks", 0)} | {rule: counts.get(rule, 0) for rule in RULES}
+    row |= {"breaks": counts.get("breaks", 0), "traffic": counts.get("traffic", 0)} | {
+        rule: counts.get(rule, 0) for rule in RULES
+    }
     return row | {"as_declared": counts.get("as_declared", 0), "declared": counts.get("declared", 0)}
 
 

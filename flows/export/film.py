@@ -19,7 +19,7 @@ import numpy as np
 
 from flows.export.finished_case import FinishedCase
 from flows.player import overview_png
-from flows.player.player_data import COLORS
+from flows.player.player_data import COLORS, TRAFFIC_COLOR
 from flows.player.road_shapes import drawing_of
 from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.errors import MissingTool
@@ -168,11 +168,20 @@ class Shots:
         picture = self._ground.copy()
         pen = ImageDraw.Draw(picture)
         script = self.case.script
+        for info, track in self.case.background:
+            self._draw_background(pen, info, track, t_s)
         for k, track in enumerate(script.trajectories):
             self._draw_actor(pen, script.info(track.actor), track, COLORS[k % len(COLORS)], t_s)
-        pen.rectangle((SIDE, 0, SIDE + 8, SIDE), fill=PAPER)  # what lies beside the plan view
+        beside = (SIDE, 0, SIDE + PANEL, SIDE)
+        picture.paste(self._ground.crop(beside), beside)  # over what lies beside the plan view
         self._write_speeds(pen, t_s)
         return picture
+
+    def _draw_background(self, pen: ImageDraw.ImageDraw, info: ActorInfo, track: Trajectory, t_s: float) -> None:
+        """A vehicle of the traffic: without trail and name."""
+        x, y, heading = (float(v) for v in track.pose[min(round(t_s / STEP_S), len(track.t_s) - 1)])
+        box = corners(Box(x, y, heading, info.length_m, info.width_m))
+        pen.polygon([self._pixel(*point) for point in box], fill=TRAFFIC_COLOR, outline=PAPER)
 
     def _draw_actor(self, pen: ImageDraw.ImageDraw, info: ActorInfo, track: Trajectory, color: str, t_s: float) -> None:
         row = min(round(t_s / STEP_S), len(track.t_s) - 1)

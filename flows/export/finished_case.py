@@ -13,7 +13,6 @@ from pydantic import ValidationError
 from flows.case_files.case_folder import read_json
 from flows.drive.script_of_case import script_of
 from flows.export.ego_files import ego_of, no_ego, source_of
-from flows.export.traffic_files import traffic_in
 from sgcad_core.case.traffic import Background
 from sgcad_core.errors import BadInput
 from sgcad_core.formats.openscenario.writing.header import Source
@@ -40,7 +39,7 @@ class FinishedCase:
     @cached_property
     def background(self) -> Background:
         """The vehicles of its traffic, if it was run with some. Raises BadInput."""
-        return traffic_in(self.folder, self.result)
+        return self.script.background
 
     @property
     def source(self) -> Source:

@@ -74,6 +74,8 @@ def _dsl(case: FinishedCase, place: Path, wish: Wish) -> list[Path]:
     moves = [_first_rows(track, rows) for track in script.trajectories]
     infos = {actor.id: actor for actor in script.actors}
     notes = [case.source.about, *(f"assumed: {line}" for line in case.source.assumed)]
+    if case.background:
+        notes.append(f"left out: {len(case.background)} vehicles of the traffic around the crash")
     told = Told(script.case, infos, moves, contact, _acts(case), [note for note in notes if note])
     place.mkdir(parents=True, exist_ok=True)
     (place / "road.xodr").write_text(case.xodr, encoding="utf-8")

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
-from pydantic import ValidationError
-
-from flows.case_files.case_folder import read_trajectories, write_trajectories
+from flows.case_files.case_folder import write_trajectories
 from sgcad_core.case.density import Density
-from sgcad_core.case.records import ActorInfo
-from sgcad_core.case.traffic import ROLE, Background, CrashScene, Traffic
-from sgcad_core.errors import BadInput
+from sgcad_core.case.traffic import CrashScene, Traffic
 from sgcad_core.execution.traffic_written import CrashWithTraffic, add_traffic
 from sgcad_core.formats.sumo.traffic_routes import FILE, traffic_routes
 from sgcad_core.handover.script import Script
@@ -33,16 +27,3 @@ def write_motion(folder: Path, script: Script, traffic: Traffic) -> list[Path]:
     write_trajectories(csv, script.trajectories, traffic.trajectories)
     routes.write_text(traffic_routes(traffic.entrants), encoding="utf-8")
     return [csv, routes]
-
-
-def traffic_in(folder: Path, result: Mapping[str, Any]) -> Background:
-    """The background vehicles of a finished case, none where it was run without. Raises BadInput."""
-    told = (result.get("traffic") or {}).get("vehicles", ())
-    if not told:
-        return ()
-    try:
-        infos = {info.id: info for info in map(ActorInfo.model_validate, told)}
-        tracks = read_trajectories(folder / "trajectories.csv", ROLE)
-        return tuple((infos[track.actor], track) for track in tracks)
-    except (OSError, KeyError, TypeError, ValidationError) as fault:
-        raise BadInput(f"{folder}: its traffic cannot be read ({type(fault).__name__}); run the case again") from fault

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flows.player.player_data import Mover, View
+from flows.player.player_data import TRAFFIC_COLOR, Mover, View
 from flows.player.road_shapes import Drawing
 from sgcad_core.geometry.plane import Box, corners
 from sgcad_core.roads.closures import CONE_M
@@ -51,6 +51,7 @@ def _draw(view: View) -> bytes:
     axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
     points_per_m = SIZE_IN * 72 / (2 * half)
     draw_network(axes, view.drawing, points_per_m)
+    _traffic(axes, view)
     for mover in view.movers:
         draw_path(axes, mover)
     _contact(axes, view)
@@ -110,6 +111,20 @@ def draw_path(axes: Axes, mover: Mover) -> None:
     label.set_bbox({"boxstyle": "round,pad=0.25", "facecolor": color, "edgecolor": "white", "linewidth": 0.8})
 
 
+def _traffic(axes: Axes, view: View) -> None:
+    """Background vehicles where they are at the contact, else halfway."""
+    from matplotlib.collections import PolyCollection
+
+    contact = view.record.execution.contact if view.record.execution else None
+    boxes = []
+    for info, track in view.traffic:
+        at = contact.t_s if contact else float(track.t_s[-1]) / 2
+        k = min(int(np.searchsorted(track.t_s, at)), len(track.t_s) - 1)
+        x, y, heading = (float(v) for v in track.pose[k])
+        boxes.append(corners(Box(x, y, heading, info.length_m, info.width_m)))
+    axes.add_collection(PolyCollection(boxes, facecolors=TRAFFIC_COLOR, edgecolors="white", linewidths=0.4, zorder=2.8))
+
+
 def _contact(axes: Axes, view: View) -> None:
     if (point := view.contact_point()) is not None:
         axes.plot(
@@ -128,6 +143,7 @@ def _legend(axes: Axes, view: View) -> None:
     if near and not observed:
         text += f"\nnear crash: {near['actor']} and {near['other']} closest {near['clearance_m']:.1f} m"
         text += f" at {near['t_s']:.1f} s"
+    text += f"\ngray: traffic {'at that time' if observed else 'halfway'}" if view.traffic else ""
     box = {"boxstyle": "round,pad=0.4", "facecolor": "white", "alpha": 0.85, "edgecolor": "none"}
     axes.text(0.02, 0.98, text, transform=axes.transAxes, va="top", fontsize=8.5, bbox=box, parse_math=False)
     half = (axes.get_xlim()[1] - axes.get_xlim()[0]) / 2

@@ -119,6 +119,10 @@
       ink.restore();
     }
   }
+  const covers = [$("legend"), $("compass")].map((part) => [part, 60]);
+  function covered(x, y) {                               // under the legend or the compass, which lie over the map
+    return covers.some(([part, by]) => x > part.offsetLeft - by && x < part.offsetLeft + part.offsetWidth + by && y < part.offsetTop + part.offsetHeight + 12);
+  }
   function placesOf(road) {                              // points along a road's lanes that are in view, in pixels
     const h = size()[1], found = [];
     for (const [, cars, flat, name] of data.drawing.strips) {
@@ -126,7 +130,7 @@
       for (let i = 2; i < flat.length; i += 2) {
         for (let u = 0; u <= 1; u += 0.05) {
           const [x, y] = toScreen(flat[i - 2] + u * (flat[i] - flat[i - 2]), flat[i - 1] + u * (flat[i + 1] - flat[i - 1]));
-          if (x > pane.left + 70 && x < pane.left + pane.wide - 70 && y > 24 && y < h - 24) found.push([x, y]);
+          if (x > pane.left + 70 && x < pane.left + pane.wide - 70 && y > 24 && y < h - 24 && !covered(x, y)) found.push([x, y]);
         }
       }
     }
@@ -134,10 +138,11 @@
   }
   function drawNames() {                                 // a road's name on it, as far from the vehicles as it is in view
     const busy = pane.actors.map((a) => { const p = pose(a, now); return toScreen(p.x, p.y); });
+    if (contact && contact.x !== undefined) busy.push(toScreen(contact.x, contact.y));
     ink.font = "600 11px system-ui, sans-serif"; ink.textAlign = "center"; ink.textBaseline = "middle";
     for (const road of new Set(data.drawing.strips.map((s) => s[3]).filter(Boolean))) {
       const guess = (data.facts[road] || []).filter((f) => f.status === "default").length, name = (data.facts[road] || []).find((f) => f.name === "name");
-      const text = `${road.replace(/^road /, "")}${name ? ` (${name.value})` : ""} road${guess && layer.assumed ? " · partly assumed" : ""}`;
+      const text = `${road.replace(/^road /, "").replaceAll("_", " ")}${name ? ` (${name.value})` : ""} road${guess && layer.assumed ? " · partly assumed" : ""}`;
       const away = ([x, y]) => Math.min(...busy.map(([u, v]) => Math.hypot(x - u, y - v)), 1e6), wide = ink.measureText(text).width / 2 + 8;
       const best = placesOf(road).reduce((a, b) => !a || away(b) > away(a) + 1 ? b : a, null);
       if (!best) continue;

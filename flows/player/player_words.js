@@ -56,7 +56,7 @@
     if (typeof v !== "number") return show(v);
     const [unit] = [unitOf(key)];
     if (key === "contact_energy_j") return `${(v / 1000).toFixed(1)} kJ`;
-    if (unit === "m/s²" && v > HARDEST_MPS2) return `over ${HARDEST_MPS2} ${unit}: braking cannot`;
+    if (unit === "m/s²" && v > HARDEST_MPS2) return `over ${HARDEST_MPS2} ${unit}: more than brakes give`;
     if (/probability|risk/.test(key)) return `${(100 * v).toFixed(v < 0.1 ? 2 : 0)} %`;
     return unit ? `${plainly(v)} ${unit}` : plainly(v);
   }
@@ -122,7 +122,7 @@
   if (driven) {                                          // of a drive: did it avoid the crash, and what rules did it cost
     const own = driven.rules.filter((r) => r.ego && r.status === "broken");
     verdict.textContent = `${driven.outcome}: ${driven.reason}` + (own.length ? ` · breaks ${own.length === 1 ? "a rule" : `${own.length} rules`}` : "");
-    verdict.className = driven.outcome === "avoided" ? (own.length ? "" : "good") : ["unchanged", "worse"].includes(driven.outcome) ? "bad" : "";
+    verdict.className = driven.outcome === "avoided" ? (own.length || driven.doubt ? "" : "good") : ["unchanged", "worse"].includes(driven.outcome) ? "bad" : "";
     $("rulecard").hidden = false;
     for (const r of driven.rules) row($("rules"), [make("td", r.status, { className: r.status === "broken" ? "no" : "" }), r.text]);
     if (!own.length) row($("rules"), [make("td", "kept"), driven.kept ? `${driven.ego}: every rule that the map tells of` : "the map tells of no rule here"]);
@@ -142,7 +142,7 @@
   });
   tell($("narrative"), data.narrative.slice(read), read);
   if ((data.redactions || []).length) { $("redacted").hidden = false; $("redacted").textContent = "Dotted words stand for others, and […] for words left out: sex, age, names, licence, health and injury data and numbers of reports and badges are not kept."; }
-  for (const thing of Object.keys(data.facts)) if (thing.startsWith("road ")) $("roads").append(pointable(make("button", thing), [thing]));
+  for (const thing of Object.keys(data.facts)) if (thing.startsWith("road ")) $("roads").append(pointable(make("button", thing.replaceAll("_", " ")), [thing]));
   if (data.facts.contact) $("roads").append(pointable(make("button", "contact"), ["contact"]));
   row($("actors"), ["", "type", "maneuver", "size"], true);
   for (const a of data.actors) row($("actors"), [pill(a), a.type, a.maneuver, `${a.length_m.toFixed(1)} × ${a.width_m.toFixed(1)} m`]);

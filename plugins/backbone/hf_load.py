@@ -31,6 +31,9 @@ Prepare = Callable[[Image.Image, int], Mapping[str, Any]]
 """Turns a picture in one of its views (0: unchanged) into tensors by the model's argument names; the processor may add
 other values."""
 
+SMALL_PARAMETERS = 100_000_000
+"""A model on the processor with fewer computes with one thread."""
+
 
 @dataclass(frozen=True)
 class Loaded:
@@ -76,7 +79,17 @@ def load(
     if not options.get("device_map") and quantization == "none":
         model = model.to(_device(device))
     model.eval()
+    if _is_small(model):
+        torch.set_num_threads(1)
     return Loaded(model, tokenizer, _template(tokenizer, place, revision), prepare, _evidence_heads(place, model))
+
+
+def _is_small(model: Any) -> bool:
+    """Whether threads that share its small steps would wait for each other: on a busy machine they cost three times the
+    time, since those that are ready spin until the last one gets a core."""
+    weights = list(model.parameters())
+    on_cpu = all(w.device.type == "cpu" for w in weights)
+    return on_cpu and sum(w.numel() for w in weights) < SMALL_PARAMETERS
 
 
 def load_tokenizer(name: str, field: str) -> tuple[Any, str | None]:

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import Context, Finding, Hold, Passage, Query, RoadNetwork
@@ -41,6 +42,17 @@ class SpecRoad(RoadWriter):
     """configs/prompts/<prompt>.md; empty: the one named like the form."""
     places: bool = False
     """Whether the answer may tell roundabouts and their like; the embedded model has not learned their fields."""
+
+    @field_validator("places", mode="before")
+    @classmethod
+    def _no_map(cls, told: object) -> object:
+        """A map belongs to the writer that takes one."""
+        if isinstance(told, str | Path) and str(told).lower() not in ("true", "false"):
+            raise ValueError(
+                f"this writer asks a model and takes no maps ({told}): leave --places out, or take the writer that "
+                "draws with maps (road_writer: template, as in template.yaml and fused.yaml)"
+            )
+        return told
 
     def write(
         self, context: Context, passages: Sequence[Passage], findings: Sequence[Finding], ask: Ask, attempt: int

@@ -47,4 +47,4 @@ def phrase(field: str, value: Value) -> str:
     """A field and its value in words: "V2 speed 35 mph"."""
     about, name = named(field)
     told = "" if value is True else shown(field, value)
-    return " ".join(filter(None, [about, name, told]))
+    return " ".join(filter(None, [about.replace("_", " "), name, told]))

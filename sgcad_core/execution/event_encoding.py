@@ -18,7 +18,7 @@ from sgcad_core.formats.opendrive.signals import Controller
 from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.formats.openscenario.writing.events import EventOptions, Fallbacks
 from sgcad_core.formats.openscenario.writing.versions import Version
-from sgcad_core.formats.openscenario.writing.writer import write_xosc
+from sgcad_core.formats.openscenario.writing.writer import Handles, write_xosc
 from sgcad_core.records.specs import BehaviorSpec
 
 ASTRAY_M = 0.3
@@ -39,7 +39,9 @@ def write_editable(
     told = handover.plainly
     while True:
         way = replace(handover, plainly=told)
-        text = write_xosc(actors, trajectories, behavior, version=version, handover=way, signals=signals)
+        text = write_xosc(
+            actors, trajectories, behavior, version=version, handover=way, signals=signals, handles=Handles()
+        )
         astray = _astray(actors, trajectories, handover.contact, play(text, handover.xodr))
         if not astray or (plainer := _plainer(told, astray, text)) == told:
             return text

@@ -39,7 +39,7 @@ def compile_scenario(
     # the library that writes takes half a second to import, which a config's check need not wait for
     from sgcad_core.execution.event_encoding import write_editable
     from sgcad_core.formats.openscenario.writing.events import EventOptions
-    from sgcad_core.formats.openscenario.writing.writer import origin_motion, write_xosc
+    from sgcad_core.formats.openscenario.writing.writer import Handles, origin_motion, write_xosc
 
     _check_ids(behavior)
     if network.net_xml is None:
@@ -52,7 +52,8 @@ def compile_scenario(
     if encoding == "events":
         xosc = write_editable(*plan_of, EventOptions(planned.contact, network.xodr), version, times.controllers)
     else:
-        xosc = write_xosc(*plan_of, version=version, signals=times.controllers)
+        handles = Handles(network.xodr)
+        xosc = write_xosc(*plan_of, version=version, signals=times.controllers, handles=handles)
     return Scenario(
         xosc=xosc,
         actors=actors,

@@ -106,7 +106,7 @@ def _outcome(drive: Drive, now: Severity | None, scripted: Severity | None, marg
         return "worse", "the script has no contact of the ego"
     before, after = scripted.worst_delta_v_mps, now.worst_delta_v_mps
     slack = max(margins.share * before, margins.least_mps)
-    told = f"delta-v {after:.1f} m/s, in the script {before:.1f}"
+    told = f"delta-v {after:.1f} m/s, in the script {before:.1f} m/s"
     if after < before - slack:
         return "mitigated", told
     return ("worse" if after > before + slack else "unchanged"), told

@@ -16,6 +16,7 @@ import numpy as np
 
 from sgcad_core.case.driver_io import STEP_S, Way
 from sgcad_core.case.records import ActorInfo, ObservedContact, Trajectory, sizes_of
+from sgcad_core.case.traffic import Background
 from sgcad_core.errors import ConfigError
 from sgcad_core.execution.contact import first_with
 from sgcad_core.geometry.plane import Floats, Size, arc_lengths
@@ -51,6 +52,8 @@ class Script:
     """Peak friction, where it is given; else that of the surface."""
     xosc: str | None = field(default=None, repr=False)
     """The scenario file: it has the plan of the signals."""
+    background: Background = field(default=(), repr=False)
+    """Traffic around the crash. No driver sees it, and it sees none."""
 
     @cached_property
     def lights(self) -> Lights | None:

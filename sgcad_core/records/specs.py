@@ -30,6 +30,7 @@ NodeControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yie
 Turn = Literal["left", "through", "right", "left_through", "through_right", "left_right", "any"]
 Median = Literal["none", "painted", "raised", "grass", "barrier"]
 RoadArea = Literal["", "rural", "town", "motorway"]
+CenterLine = Literal["", "double_yellow", "solid_yellow", "broken_yellow"]
 Beside = Literal["bike_lane", "parking", "shoulder", "sidewalk"]
 """What lies beside the lanes of a road, in this order from the lanes outwards."""
 Area = Literal["front", "back", "left", "right"]
@@ -115,6 +116,7 @@ class ToldRoad(NamedTuple):
     posted: bool = True
     """Whether its speed limit is told; else it is a usual one."""
     area: RoadArea = ""
+    center_line: CenterLine = ""
 
 
 # ------------------------------------------------------------------ road, as a small model or a template says it

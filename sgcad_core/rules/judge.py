@@ -11,8 +11,10 @@ from typing import Any
 
 from sgcad_core.rules.crosswalks import against_signal, at_crosswalks
 from sgcad_core.rules.following import following_distance
+from sgcad_core.rules.lane_change import lane_change
 from sgcad_core.rules.lane_keeping import off_road, wrong_side
 from sgcad_core.rules.passages import Passage, passages
+from sgcad_core.rules.passing import passing
 from sgcad_core.rules.records import RULES, RuleFinding, RuleScene
 from sgcad_core.rules.red_light import red_light
 from sgcad_core.rules.right_of_way import right_of_way
@@ -25,7 +27,8 @@ def judge(scene: RuleScene) -> tuple[RuleFinding, ...]:
     crossed: list[Passage] = [p for m in scene.movers if m.lanes_bound for p in passages(scene.graph, m)]
     found = [
         *red_light(scene, crossed), *against_signal(scene), *stop_sign(scene, crossed), *right_of_way(scene, crossed),
-        *at_crosswalks(scene), *wrong_side(scene), *speed_limit(scene), *following_distance(scene), *off_road(scene),
+        *at_crosswalks(scene), *wrong_side(scene), *passing(scene), *lane_change(scene),
+        *speed_limit(scene), *following_distance(scene), *off_road(scene),
     ]  # fmt: skip
     order = {t.actor: k for k, t in enumerate(scene.trajectories)}
     return tuple(sorted(found, key=lambda f: (RULES.index(f.rule), order[f.actor], f.from_s)))

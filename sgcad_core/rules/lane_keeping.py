@@ -1,8 +1,8 @@
 """The right side and the lanes: driving on lanes of the other direction (UVC 11-301), and beside or off the lanes
 (UVC 11-309, shoulders and sidewalks).
 
-Places are those of the center of the box (`lane_places`): two wheels on the shoulder are no finding. Passing on the
-left is lawful where the center line is broken; maps of reports do not tell the line, so passing gives `unknown`.
+Places are those of the center of the box (`lane_places`): two wheels on the shoulder are no finding. A stretch on the
+other side in which another vehicle is passed is judged by `passing`.
 Bicycles may use everything beside the lanes; bicycle lanes and parking lanes count as lanes.
 """
 
@@ -17,32 +17,33 @@ from sgcad_core.geometry.plane import runs
 from sgcad_core.metrics.drivability import STEP_S
 from sgcad_core.metrics.lane_places import PLACES
 from sgcad_core.roads.surface import RoadSurface, road_surface
-from sgcad_core.rules.records import Mover, RuleFinding, RuleScene, Status, lasts_s
+from sgcad_core.rules.records import Mover, RuleFinding, RuleScene, lasts_s
 
 _STRIPS = frozenset({"biking", "parking"})
 _JOINT_S = 0.3
 """Shorter gaps between two stretches are none."""
-_ALIKE = 0.5
+ALIKE = 0.5
 """Cosine of the angle between headings of vehicles that go the same way."""
 
 
 def wrong_side(scene: RuleScene) -> Iterator[RuleFinding]:
-    """Each stretch on lanes of the other direction; or that there is none."""
+    """Each stretch on lanes of the other direction without a vehicle that is passed; or that there is none."""
     for mover in scene.movers:
         if not mover.lanes_bound or not _drives(scene, mover).any():
             continue
-        opposing = _drives(scene, mover) & (mover.steps.codes == PLACES.index("opposing"))
-        long = _long(scene, opposing)
+        long = opposing_stretches(scene, mover)
         for span in long:
-            passed = _passed(scene, mover, span)
-            note = f"passes {passed}; whether the center line may be crossed is not told" if passed else ""
-            seconds = lasts_s(span)
-            status: Status = "unknown" if passed else "broken"
-            where = mover.steps.lanes[span[0]]
-            yield mover.found("wrong_side", status, span, where, seconds, scene.limits.off_lane_s, "s", note, passed)
+            if passed_by(scene, mover, span) is None:
+                yield mover.found("wrong_side", "broken", span, mover.steps.lanes[span[0]], lasts_s(span),
+                                  scene.limits.off_lane_s, "s")  # fmt: skip
         if not long:
-            yield mover.found("wrong_side", "kept", (0, len(mover.pose)), "", opposing.sum() * STEP_S,
+            yield mover.found("wrong_side", "kept", (0, len(mover.pose)), "", _opposing(scene, mover).sum() * STEP_S,
                               scene.limits.off_lane_s, "s")  # fmt: skip
+
+
+def _opposing(scene: RuleScene, mover: Mover) -> NDArray[np.bool_]:
+    opposing: NDArray[np.bool_] = _drives(scene, mover) & (mover.steps.codes == PLACES.index("opposing"))
+    return opposing
 
 
 def off_road(scene: RuleScene) -> Iterator[RuleFinding]:
@@ -51,8 +52,7 @@ def off_road(scene: RuleScene) -> Iterator[RuleFinding]:
     for mover in scene.movers:
         if surface is None or not mover.lanes_bound or not _drives(scene, mover).any():
             continue
-        outside = _drives(scene, mover) & _outside(scene, mover)
-        long = _long(scene, outside)
+        long = outside_stretches(scene, mover)
         for span in long:
             far = _beyond(surface, mover, span)
             yield mover.found("off_road", "broken", span, _beside(scene, mover, span[0]), far, 0.0, "m from the lanes")
@@ -98,8 +98,18 @@ def _beyond(surface: RoadSurface, mover: Mover, span: tuple[int, int]) -> float:
     return float(surface.off(mover.pose[span[0] : span[1] + 1, :2])[0].max())
 
 
-def _passed(scene: RuleScene, mover: Mover, span: tuple[int, int]) -> str:
-    """The vehicle of its own direction that it overtakes during a stretch; "" for none."""
+def opposing_stretches(scene: RuleScene, mover: Mover) -> list[tuple[int, int]]:
+    """First and last samples of stretches on lanes of the other direction."""
+    return _long(scene, _opposing(scene, mover))
+
+
+def outside_stretches(scene: RuleScene, mover: Mover) -> list[tuple[int, int]]:
+    """First and last samples of stretches beside or off the lanes."""
+    return _long(scene, _drives(scene, mover) & _outside(scene, mover))
+
+
+def passed_by(scene: RuleScene, mover: Mover, span: tuple[int, int]) -> Mover | None:
+    """The vehicle of its own direction that a vehicle overtakes during a stretch."""
     first, last = span
     for other in scene.movers:
         if other is mover or not other.lanes_bound or len(other.pose) <= first:
@@ -109,9 +119,9 @@ def _passed(scene: RuleScene, mover: Mover, span: tuple[int, int]) -> str:
         a, b = (p[:n] for p in pair)
         ahead = np.cos(a[:, 2]) * (b[:, 0] - a[:, 0]) + np.sin(a[:, 2]) * (b[:, 1] - a[:, 1])
         if (
-            np.cos(a[0, 2] - b[0, 2]) > _ALIKE
+            np.cos(a[0, 2] - b[0, 2]) > ALIKE
             and 0.0 < float(ahead[0]) < 80.0
             and ahead[-1] < ahead[0] - mover.info.length_m
         ):
-            return other.id
-    return ""
+            return other
+    return None

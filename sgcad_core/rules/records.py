@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -22,16 +22,20 @@ from sgcad_core.roads.lane_graph import Connection, LaneGraph
 from sgcad_core.rules.lights import Lights, Shown
 
 Rule = Literal[
-    "red_light", "stop_sign", "right_of_way", "wrong_side", "speed_limit", "following_distance", "off_road"
+    "red_light", "stop_sign", "right_of_way", "wrong_side", "passing", "lane_change", "speed_limit",
+    "following_distance", "off_road",
 ]  # fmt: skip
-RULES: tuple[Rule, ...] = (
-    "red_light", "stop_sign", "right_of_way", "wrong_side", "speed_limit", "following_distance", "off_road"
-)  # fmt: skip
+RULES: tuple[Rule, ...] = get_args(Rule)
 WORDS: Mapping[Rule, str] = {
     "red_light": "ran a red light", "stop_sign": "did not stop at a stop sign", "right_of_way": "did not yield",
-    "wrong_side": "drove on the wrong side", "speed_limit": "exceeded the speed limit",
+    "wrong_side": "drove on the wrong side", "passing": "passed where it may not",
+    "lane_change": "changed lanes without room", "speed_limit": "exceeded the speed limit",
     "following_distance": "followed too closely", "off_road": "drove off the lanes",
 }  # fmt: skip
+_TOWARD: Mapping[Rule, str] = {
+    "right_of_way": "to", "following_distance": "behind", "passing": "of", "lane_change": "before",
+}  # fmt: skip
+"""How a rule's words go on to the other actor."""
 Status = Literal["broken", "kept", "unknown"]
 
 
@@ -75,6 +79,18 @@ class RuleLimits(Record):
     """For so long: less is a cut-in, or closing in on a vehicle that brakes. Ours."""
     headway_from_mps: float = 5.0
     """Both drive at least so fast: queues are no following. Ours."""
+    pass_oncoming_m: float = 61.0
+    """One who passes on the other side has to be back before coming so near to one that comes towards it: 200 ft (UVC
+    11-305)."""
+    pass_junction_m: float = 30.5
+    """No passing on the other side so near before a junction, nor in it: 100 ft (UVC 11-306 (a) 2)."""
+    enters_m: float = 0.3
+    """A body that reaches so far over a lane line is in that lane; lines are 0.1 to 0.15 m wide. Ours."""
+    change_reacts_s: float = 0.4
+    change_braking_mps2: float = 3.0
+    change_headway_s: float = 1.0
+    """A change of lane is critical where the one behind in the new lane, 0.4 s after it began, has to brake with more
+    than 3 m/s2 to keep a distance of 1 s: UN R79 (03 series), 5.6.4.7."""
 
 
 LIMITS = RuleLimits()
@@ -102,13 +118,12 @@ class RuleFinding(Record):
     def words(self) -> str:
         """For people: "V1 ran a red light at 3.2 s (W to hub): red for 1.4 s"."""
         verb = WORDS[self.rule] if self.status == "broken" else f"{self.rule.replace('_', ' ')} {self.status}"
-        toward = f" to {self.other}" if self.rule == "right_of_way" and self.other else ""
-        behind = f" behind {self.other}" if self.rule == "following_distance" and self.other else ""
+        toward = f" {_TOWARD[self.rule]} {self.other}" if self.rule in _TOWARD and self.other else ""
         when = f"{self.from_s:.1f} s" if self.to_s - self.from_s < STEP_S else f"{self.from_s:.1f} to {self.to_s:.1f} s"
         figure = "" if self.measured is None else f", {self.measured:.2f} {self.unit}"
         figure += "" if self.limit is None else f" (limit {self.limit:.2f})"
         note = f"; {self.note}" if self.note else ""
-        return f"{self.actor} {verb}{toward}{behind}, {when}{f', {self.where}' if self.where else ''}{figure}{note}"
+        return f"{self.actor} {verb}{toward}, {when}{f', {self.where}' if self.where else ''}{figure}{note}"
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
 """Yielding at junctions: one who must yield goes first into a place to which the other comes within `hazard_s`, or
 makes it brake hard ("so closely as to constitute an immediate hazard", UVC 11-402 to 11-404).
 
-Measured: the least time between the one leaving a place and the other coming to it (0: they touch). Lane changes,
-merges, backing and starts from the curb are not judged.
+Measured: the least time between the one leaving a place and the other coming to it (0: they touch). Merges,
+backing and starts from the curb are not judged; changes of lane are (`lane_change`).
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@
     const step = { j: 1, k: -1 }[e.key];
     if (step) { const all = links(), at = all.indexOf(document.activeElement); (all[at < 0 ? 0 : at + step] || all[at])?.focus(); }
   });
-  if (matchMedia("(max-width: 760px)").matches) document.querySelector(".facets details")?.removeAttribute("open");
+  if (matchMedia("(max-width: 1000px)").matches) document.querySelector(".facets details")?.removeAttribute("open");
   // While the folder is still being read, the list is fetched again until it is whole.
   async function again() {
     const answer = await fetch(location.href);

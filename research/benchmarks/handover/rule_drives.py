@@ -29,7 +29,7 @@ from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.geometry.plane import Floats, arc_lengths, distinct, headings, offset_polyline, prolonged, resample
 from sgcad_core.kinds import actor_kind, kind_of_letter
 from sgcad_core.metrics.drivability import STEP_S
-from sgcad_core.records.specs import Leg, RoadLayout
+from sgcad_core.records.specs import Leg, RoadLayout, ToldRoad
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.rules.judge import judge
@@ -90,10 +90,11 @@ def _label(told: Mapping[str, Mapping[str, str]]) -> dict[tuple[str, str], str]:
 # ------------------------------------------------------------------ maps, signals, motion
 @cache
 def graph_of(told: str) -> LaneGraph:
-    """The map of some legs, given as YAML."""
-    legs = tuple(Leg.model_validate({"lanes_in": 1, "lanes_out": 1, **leg}) for leg in yaml.safe_load(told))
-    spec = road_spec(RoadLayout(legs=legs))
-    made = compile_network(plain_xml(spec), spec)
+    """The map of some legs, given as YAML; `center_line` of a leg: the marking between its directions, as told."""
+    rows = [{"lanes_in": 1, "lanes_out": 1, **leg} for leg in yaml.safe_load(told)]
+    lines = {leg["bearing"]: ToldRoad(center_line=leg.pop("center_line", "")) for leg in rows}
+    spec = road_spec(RoadLayout(legs=tuple(map(Leg.model_validate, rows))))
+    made = compile_network(plain_xml(spec, lines), spec)
     if made.net_xml is None:
         raise ValueError(made.log)
     return parse_net(made.net_xml)

@@ -2,10 +2,10 @@
 
     python -m research.benchmarks.scenes.judge [RUNS] [--random N] [--judge esmini] [--path BINARY] [--most N]
 
-Takes every scenario.xosc with its road.xodr and trajectories.csv (our playing of it) that lies under RUNS; nothing that
-a run says of a judge is believed. With --random also crashes of two vehicles on so many seeded random maps: those that
-can be planned are played by both players, and where ours sees the declared contact the judge has to. Prints one line of
-figures each and the cases that disagree.
+Takes every scenario.xosc with its road.xodr and trajectories.csv (our playing of it) that lies under RUNS, the vehicles
+of its traffic among them; nothing that a run says of a judge is believed. With --random also crashes of two vehicles on
+so many seeded random maps: those that can be planned are played by both players, and where ours sees the declared
+contact the judge has to. Prints one line of figures each and the cases that disagree.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from rich.console import Console
 
 from flows.batch.second_simulator import show
 from flows.case_files import case_folder
+from flows.case_files.case_traffic import traffic_in
 from research.benchmarks.scenes.random_roads import random_crashes
 from sgcad_core.case.records import ActorInfo, RoadNetwork, Scenario
 from sgcad_core.errors import BadInput, SgcadError
@@ -84,7 +85,8 @@ def _judged_runs(folder: Path, simulator: Simulator) -> Iterator[dict[str, Any]]
 
 def _judged(case: Path, simulator: Simulator) -> dict[str, Any]:
     result: dict[str, Any] = json.loads((case / "result.json").read_text(encoding="utf-8"))
-    actors = tuple(ActorInfo.model_validate(actor) for actor in result["actors"])
+    traffic = traffic_in(case, result)
+    actors = (*(ActorInfo.model_validate(actor) for actor in result["actors"]), *(vehicle for vehicle, _ in traffic))
     declared = result["collision"]["declared"]
     scenario = Scenario(
         xosc=(case / "scenario.xosc").read_text(encoding="utf-8"),
@@ -92,7 +94,8 @@ def _judged(case: Path, simulator: Simulator) -> dict[str, Any]:
         declared=Contact.model_validate(declared) if declared else None,
     )
     network = RoadNetwork(xodr=(case / "road.xodr").read_text(encoding="utf-8"))
-    ours = execution_of("file", scenario, case_folder.read_trajectories(case / "trajectories.csv"))
+    tracks = (*case_folder.read_trajectories(case / "trajectories.csv"), *(track for _, track in traffic))
+    ours = execution_of("file", scenario, tracks)
     return result | {"judge": judge(simulator, ours, scenario, network).summary()}
 
 

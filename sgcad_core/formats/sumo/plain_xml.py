@@ -15,7 +15,7 @@ from lxml import etree
 from sgcad_core import settings
 from sgcad_core.case.records import Finding, PlainXml
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.parameters import AREA, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
+from sgcad_core.formats.sumo.parameters import AREA, CENTER_LINE, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text, xml_schema
 from sgcad_core.geometry.globe import Plane
 from sgcad_core.geometry.plane import Floats
@@ -185,7 +185,8 @@ def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> 
     if center:
         etree.SubElement(edge, "lane", index=str(count), allow=CENTER_LANE_CLASS)
     limit = f"{POSTED}{road.speed_limit_mph}" if road.speed_limit_mph and told.posted else USUAL
-    _tell(edge, {KIND: kind, MEDIAN: road.median, LIMIT: limit} | ({AREA: told.area} if told.area else {}))
+    known = {AREA: told.area, CENTER_LINE: told.center_line}
+    _tell(edge, {KIND: kind, MEDIAN: road.median, LIMIT: limit} | {key: word for key, word in known.items() if word})
 
 
 def _tell(element: Element, told: Mapping[str, str]) -> None:

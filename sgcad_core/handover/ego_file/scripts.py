@@ -15,6 +15,10 @@ cd "$(dirname "$0")" || exit 1
 driven=ego_driven.xosc
 sed "s/value=\\"ExternalController\\"/value=\\"${EGO:-InteractiveController}\\"/" ego.xosc > "$driven" || exit 1
 if [ $# -eq 0 ]; then set -- --window 60 60 1024 576; fi
+if ! command -v "${ESMINI:-esmini}" > /dev/null; then
+  echo "${ESMINI:-esmini}: no esmini there; name its binary: ESMINI=/path/to/esmini $0" >&2
+  exit 127
+fi
 exec "${ESMINI:-esmini}" --osc "$driven" "$@"
 """
 

@@ -176,7 +176,7 @@ def _skew_deg(story: Sequence[Statement]) -> int:
 def _circle_lanes(story: Sequence[Statement]) -> int | None:
     """How many lanes go around in a roundabout, where the story tells it."""
     if match := next((m for t in story if (m := CIRCLE_LANES.search(t.text))), None):
-        return 1 if match["one"] or match["one_around"] else 2
+        return 1 if match["one"] or match["one_around"] or match["one_with"] else 2
     return 2 if any(rule("junction.roundabout_lane").search(t.text) for t in story) else None
 
 

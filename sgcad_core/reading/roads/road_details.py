@@ -19,7 +19,7 @@ from sgcad_core.reading.roads.street_names import StreetNames, street_names
 from sgcad_core.reading.text.compass import compass_of, turned
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, STORY_ROLES
 from sgcad_core.reading.text.speeds import Speed
-from sgcad_core.records.specs import Compass
+from sgcad_core.records.specs import CenterLine, Compass
 
 
 class Curve(NamedTuple):
@@ -214,3 +214,9 @@ def rural_source(statements: tuple[Statement, ...]) -> Source | None:
     """Where the text says that the crash was in the country."""
     story = (t for t in statements if t.role in CRASH_ROLES)
     return next((Source(t.number, m[0], _RURAL.id) for t in story if (m := _RURAL.search(t.text))), None)
+
+
+def center_line(story: Iterable[str]) -> CenterLine:
+    """The told marking between the directions; "" where none is told, or both a solid and a broken one."""
+    lines = [r.yields["line"] for r in of_role("center_line") if any(map(r.search, story))]
+    return lines[0] if len(lines) == 1 else ""

@@ -34,7 +34,7 @@ from sgcad_core.reading.motion.absolute_headings import turned_to_roads
 from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.lanes import LaneFacts
-from sgcad_core.reading.roads.road_details import Curve, SpeedLimit, curves, rural_source, speed_limits
+from sgcad_core.reading.roads.road_details import Curve, SpeedLimit, center_line, curves, rural_source, speed_limits
 from sgcad_core.reading.roads.road_mentions import Kind, RoadMention, axis_of, road_mentions
 from sgcad_core.reading.roads.road_merge import MergedRoad, merge_roads
 from sgcad_core.reading.roads.work_zones_openings import (
@@ -49,7 +49,7 @@ from sgcad_core.reading.roads.work_zones_openings import (
 )
 from sgcad_core.reading.text.compass import AXIS_NAMES, COMPASS, turned
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
-from sgcad_core.records.specs import Beside, Compass, RoadLayout
+from sgcad_core.records.specs import Beside, CenterLine, Compass, RoadLayout
 
 
 @dataclass(frozen=True)
@@ -105,6 +105,7 @@ class RoadFacts:
     """The layout that a model answered, where some of it is `taken` (fields of
     `sgcad_core.reading.second_reader.field_claims`)."""
     taken: frozenset[str] = frozenset()
+    center_line: CenterLine = ""
 
     def lists(self, axis: Compass) -> bool:
         """Whether the story tells every lane of both legs on an axis, leg by leg, and turn lanes among them."""
@@ -156,14 +157,13 @@ def roads_of(statements: tuple[Statement, ...], roster: Roster, crash: CrashFact
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")
     told_places = (merge_lane, beside, walked, any(map(_URBAN.search, story)), closed, opening, leaves)
-    return RoadFacts(roads, junction, crash, notes, *told_places, approaches)
+    return RoadFacts(roads, junction, crash, notes, *told_places, approaches, center_line=center_line(story))
 
 
 def _undrawn(named: tuple[str, ...], places: Mapping[str, tuple[object, object]]) -> tuple[str, ...]:
     """Kinds of places that are named and not drawn; `places`: of some kinds what is told and what is drawn."""
     told = [kind for kind, (seen, drawn) in places.items() if seen and not drawn]
-    lacking = [kind for kind in named if not places.get(kind, (None, None))[1]]
-    return tuple(dict.fromkeys([*lacking, *told]))
+    return tuple(dict.fromkeys([*(kind for kind in named if not places.get(kind, (None, None))[1]), *told]))
 
 
 def _closable(closed: ClosedLanes, junction: JunctionFacts, roads: tuple[RoadFact, ...]) -> bool:

@@ -1,4 +1,5 @@
-"""What a report tells of drawn roads beyond their lanes: whether a limit is posted or assumed, and the area.
+"""What a report tells of drawn roads beyond their lanes: whether a limit is posted or assumed, the area, the
+center line.
 
 Knows the road facts and the ids of a layout's roads; no file format.
 """
@@ -19,7 +20,10 @@ _IN_TOWN = ("bike_lane", "parking", "sidewalk")
 def told_roads(facts: RoadFacts, spec: RoadSpec) -> Mapping[str, ToldRoad]:
     """Road id -> what is told of it. A limit counts as posted where the report tells it of a road of that axis."""
     in_town = facts.urban or facts.crosswalk or any(what in _IN_TOWN for what in facts.beside)
-    return {road.id: _as_told(road, _facts_of(road, facts), in_town) for road in spec.roads}
+    told = {road.id: _as_told(road, _facts_of(road, facts), in_town) for road in spec.roads}
+    streets = [road for road in spec.roads if _facts_of(road, facts)]
+    line = facts.center_line if facts.junction.kind == "none" else ""  # at a junction it may be that of either road
+    return told | {road.id: told[road.id]._replace(center_line=line) for road in streets if line}
 
 
 def _facts_of(road: Road, facts: RoadFacts) -> list[RoadFact]:

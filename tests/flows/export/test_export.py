@@ -1,5 +1,6 @@
 """`sgcad export` and `sgcad video` on a case that the product made: files, their content, errors."""
 
+import itertools
 import json
 import pickle
 import subprocess
@@ -15,7 +16,7 @@ from flows.case.run_case import run_case
 from flows.case_files.case_folder import read_trajectories
 from flows.case_files.find_cases import cases_of
 from flows.cli import app
-from flows.export.film import film
+from flows.export.film import SIDE, Shots, film
 from flows.export.finished_case import FinishedCase
 from flows.player.player_page import DATA
 from sgcad_core.config import load
@@ -73,6 +74,13 @@ def test_esmini_script_gives_the_ego_the_wanted_driver(made, tmp_path):
     about = {"ESMINI": str(player), "EGO": "ACCController", "PATH": "/usr/bin:/bin"}
     told = subprocess.run([made / "run_esmini.sh"], env=about, capture_output=True, text=True, check=True).stdout
     assert 'name="EgoController" parameterType="string" value="ACCController"' in told
+
+
+def test_esmini_script_names_the_missing_binary(made):
+    ended = subprocess.run(["sh", made / "run_esmini.sh"], env={"ESMINI": "/no/such", "PATH": "/usr/bin:/bin"},
+                           capture_output=True, text=True, check=False)  # fmt: skip
+    assert ended.returncode == 127
+    assert "/no/such: no esmini there; name its binary: ESMINI=/path/to/esmini" in ended.stderr
 
 
 def test_scenario_names_its_source_date_and_assumptions(made):
@@ -236,6 +244,58 @@ def test_a_config_may_ask_for_traffic_and_the_crash_is_judged_without_it(made, t
     assert len(root.findall("dynamicObstacle")) == 1 + count
     exported(folder, "--traffic", "dense")  # in the place of the light one
     assert "<!-- Source" in (folder / "export" / "traffic" / "dense" / "scenario.xosc").read_text()
+
+
+@pytest.fixture(scope="module")
+def among(tmp_path_factory):
+    """The same case with traffic."""
+    place = tmp_path_factory.mktemp("among")
+    (place / "yield.txt").write_text(REPORT)
+    (case,) = cases_of([place / "yield.txt"])
+    run_case(load("template.yaml", ("tracker=none", "traffic=light")), case, place / "runs", "with")
+    return place / "runs" / "template" / "yield"
+
+
+GRAY = (0xC9, 0xCF, 0xD4)
+"""The color of traffic in pictures (`TRAFFIC_COLOR`)."""
+
+
+def gray(picture):
+    return int((np.abs(np.asarray(picture.convert("RGB")).astype(int) - GRAY).max(axis=2) <= 2).sum())
+
+
+def test_picture_and_film_show_the_traffic_and_only_on_the_map(made, among):
+    assert gray(Image.open(made / "picture.png")) < 20  # smooth letters have some gray
+    assert gray(Image.open(among / "picture.png")) > 100
+    shots = Shots(FinishedCase(among))
+    seen = [gray(shot.crop((0, 0, SIDE, SIDE))) for shot in itertools.islice(shots.frames(1), 6)]
+    assert max(seen) > 100
+    beside = [gray(shot.crop((SIDE, 0, *shot.size))) for shot in itertools.islice(shots.frames(1), 6)]
+    plain = next(Shots(FinishedCase(made)).frames(1))
+    assert max(beside) <= gray(plain.crop((SIDE, 0, *plain.size))) + 5
+
+
+def test_a_drive_replays_the_traffic_and_tells_whom_the_ego_touches(among):
+    assert run("drive", among, "--driver", "aeb").exit_code == 0
+    count = len(FinishedCase(among).background)
+    for file in among.glob("drive/aeb/*/drive.json"):
+        told = json.loads(file.read_text())["traffic"]
+        assert told["vehicles"] == count
+        assert set(told["touched"]) <= {info.id for info, _ in FinishedCase(among).background}
+        page = (file.parent / "drive.html").read_text()
+        assert '"traffic1"' in page
+        assert f"Gray: {count} vehicles of traffic, replayed" in page
+        assert ('"doubt": true' in page or '"doubt":true' in page) == bool(told["touched"])
+
+
+def test_what_leaves_the_traffic_out_says_so(among):
+    count = len(FinishedCase(among).background)
+    exported(among, "--format", "dsl")
+    told = (among / "export" / "dsl" / "yield.osc").read_text()
+    assert f"# left out: {count} vehicles of the traffic around the crash" in told
+    ended = run("vary", among, "-n", "1")
+    assert f"the {count} vehicles of its traffic are left out" in ended.output
+    assert json.loads((among / "vary" / "seed-1" / "manifest.json").read_text())["traffic_left_out"] == count
 
 
 def test_where_there_is_no_room_the_case_stays_and_says_so(tmp_path):

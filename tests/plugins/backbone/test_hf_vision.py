@@ -16,6 +16,7 @@ import pytest
 import torch
 from safetensors.torch import save_file
 
+from plugins.backbone import hf_load
 from plugins.backbone.hf_vision import HfVision
 from plugins.decoder.adacad import AdaCad
 from plugins.decoder.cad import Cad
@@ -41,6 +42,16 @@ def backbones(tmp_path_factory: pytest.TempPathFactory) -> dict[str, HfVision]:
         folder = folders.save(name, tmp_path_factory.mktemp(name))
         made[name] = HfVision(model=str(folder), device="cpu", dtype="float32", max_new_tokens=200)
     return made
+
+
+def test_a_small_model_on_the_processor_computes_with_one_thread(tmp_path: Path) -> None:
+    before = torch.get_num_threads()
+    torch.set_num_threads(2)
+    try:
+        hf_load.load(str(folders.save("text_only", tmp_path)), None, {"dtype": "float32"}, "cpu", "none")
+        assert torch.get_num_threads() == 1
+    finally:
+        torch.set_num_threads(before)
 
 
 def valid(generation: Generation) -> Any:

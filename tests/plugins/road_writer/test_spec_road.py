@@ -11,7 +11,8 @@ import pytest
 from plugins.road_writer.spec import SpecRoad
 from sgcad_core.asking.prompts import answer_schema, load_prompt
 from sgcad_core.case.records import Context, Generation, Passage
-from sgcad_core.errors import InvalidOutput, Refused
+from sgcad_core.config import load
+from sgcad_core.errors import ConfigError, InvalidOutput, Refused
 from sgcad_core.formats.sumo.net_xml import network_figures, parse_net, segments
 from sgcad_core.records.answer_schema import added_fields
 from sgcad_core.records.specs import Access, Leg, Node, Road, RoadLayout, RoadSpec
@@ -141,3 +142,9 @@ def test_a_leg_that_repeats_a_bearing_is_held_to_another():
     with pytest.raises(InvalidOutput) as fault:
         write(json.dumps(answer), form="layout")
     assert not any(finding.holds for finding in fault.value.findings)
+
+
+@pytest.mark.parametrize("told", ["county.osm.bz2", "maps/"])
+def test_a_map_is_refused_with_the_writer_that_takes_one(told):
+    with pytest.raises(ConfigError, match=r"asks a model and takes no maps .*road_writer: template"):
+        load("mini.yaml", (f"road_writer.places={told}", "tracker=none"))

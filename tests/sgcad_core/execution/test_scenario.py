@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -14,17 +16,36 @@ from tests.sgcad_core.formats.xosc_samples import CROSSING, crossroads
 
 
 def test_a_scenario_carries_what_the_result_needs():
-    scenario = compile_scenario(CROSSING, crossroads())
+    scenario = compile_scenario(CROSSING, network := crossroads())
     assert [(a.id, a.type, a.length_m, a.width_m, a.maneuver) for a in scenario.actors] == [
         ("V1", "car", 4.7, 1.8, "turn_left"), ("V2", "truck", 9.0, 2.5, "straight"),
         ("P1", "pedestrian", 0.5, 0.6, "straight"),
     ]  # fmt: skip
     assert scenario.declared == CROSSING.contacts[0]
     assert scenario.behavior == CROSSING
-    for played, planned in zip(play(scenario.xosc), scenario.planned, strict=True):
+    for played, planned in zip(play(scenario.xosc, network.xodr), scenario.planned, strict=True):
         assert played.actor == planned.actor
         away = np.hypot(played.x_m - planned.x_m, played.y_m - planned.y_m)
         assert away.max() < 0.06  # the file leaves out what players merge while somebody comes to rest
+
+
+def test_parameters_slow_shift_and_smooth_the_crash_and_lanes_hold_the_starts():
+    network = crossroads()
+    text = compile_scenario(CROSSING.model_copy(update={"surface": "wet"}), network).xosc
+    declared = dict(re.findall(r'<ParameterDeclaration name="(\w+)" parameterType="double" value="([^"]+)"', text))
+    assert declared.keys() >= {"EndTime", "V1_TimeScale", "V1_TimeOffset", "V2_TimeScale", "P1_TimeOffset", "Friction"}
+    assert 'frictionScaleFactor="$Friction"' in text
+    assert text.count("<LanePosition") >= 2
+    plain = {t.actor: t for t in play(text, network.xodr)}
+    later = text.replace('name="V2_TimeOffset" parameterType="double" value="0"',
+                         'name="V2_TimeOffset" parameterType="double" value="1"')  # fmt: skip
+    shifted = {t.actor: t for t in play(later, network.xodr)}
+    assert np.allclose(shifted["V1"].pose[:100], plain["V1"].pose[:100])
+    assert np.allclose(shifted["V2"].points[40:100], plain["V2"].points[20:80], atol=1e-3)
+    slower = text.replace('name="V2_TimeScale" parameterType="double" value="1"',
+                          'name="V2_TimeScale" parameterType="double" value="2"')  # fmt: skip
+    slow = {t.actor: t for t in play(slower, network.xodr)}
+    assert np.allclose(slow["V2"].points[40:120:2], plain["V2"].points[20:60], atol=1e-3)
 
 
 def test_the_same_behavior_gives_the_same_file():

@@ -7,6 +7,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.metrics.lane_places import EDGE_M
+from sgcad_core.rules.lane_change import room_m
 from sgcad_core.rules.records import LIMITS
 from sgcad_core.units import MPS_PER_MPH
 from tests.effort import many
@@ -67,6 +68,62 @@ def test_following_is_measured_from_front_to_front(headway: float, speed: float)
                  V2={"way": "S -N", "at": [[-180 + ahead, speed], [-60 + ahead, speed]]})  # fmt: skip
     assert status(made, "following_distance") == ("broken" if headway < LIMITS.headway_s else "kept")
     assert found(made, "following_distance")[0].measured == pytest.approx(headway, abs=0.05)
+
+
+@given(st.floats(-8.0, 60.0), st.floats(8.0, 25.0))
+@settings(max_examples=many(15, 200), deadline=None)
+def test_a_change_of_lane_needs_the_room_of_the_one_behind(gap: float, behind: float) -> None:
+    speed = 20.0
+    needs = room_m(behind, speed, LIMITS)
+    assume(abs(gap - needs) > 1.0)
+    length = 4.8
+    begins_s = (200.0 - 87.0) / speed
+    start = -87.0 - length - gap - behind * begins_s
+    made = scene("wide", V1={"way": "S -N", "lane": 0, "at": [[-200, speed], [60, speed]],
+                             "aside": [[-100, 0], [-60, 3.6]]},
+                 V2={"way": "S -N", "lane": 1, "at": [[start, behind], [start + 14 * behind, behind]]})  # fmt: skip
+    assert status(made, "lane_change") == ("broken" if gap < needs else "kept")
+    told = found(made, "lane_change")[0]
+    assert told.measured == pytest.approx(gap, abs=1.0)
+    assert told.other == "V2"
+
+
+@pytest.mark.parametrize(
+    ("behind", "ahead", "metres"),
+    [(20.0, 20.0, 20.0), (26.0, 20.0, 6 * 0.4 + 36 / 6 + 20.0), (10.0, 25.0, 10.0), (0.0, 20.0, 0.0)],
+)
+def test_the_room_is_that_of_the_regulation(behind: float, ahead: float, metres: float) -> None:
+    assert room_m(behind, ahead, LIMITS) == pytest.approx(metres)
+
+
+@pytest.mark.parametrize(("road", "said"), [("dashed", "kept"), ("double", "broken"), ("road", "unknown")])
+def test_the_center_line_decides_on_passing(road: str, said: str) -> None:
+    made = scene(road, V1={"way": "S -N", "at": [[-200, 18], [130, 18]],
+                           "aside": [[-150, 0], [-120, 3.5], [0, 3.5], [30, 0]]},
+                 V2={"way": "S -N", "at": [[-120, 8], [100, 8]]})  # fmt: skip
+    assert status(made, "passing") == said
+    assert found(made, "passing")[0].other == "V2"
+    assert not found(made, "wrong_side")
+
+
+@given(st.floats(10.0, 160.0))
+@settings(max_examples=many(10, 200), deadline=None)
+def test_passing_ends_200_feet_before_one_that_comes(apart: float) -> None:
+    assume(abs(apart - LIMITS.pass_oncoming_m) > 3.0)
+    leaves_y, speed, other = 15.0, 18.0, 15.0  # V1 is back in its lane at y = 15 m, after 215 m
+    start = -(leaves_y + apart) - other * (200.0 + leaves_y) / speed
+    made = scene("dashed", V1={"way": "S -N", "at": [[-200, speed], [130, speed]],
+                               "aside": [[-150, 0], [-120, 3.5], [0, 3.5], [30, 0]]},
+                 V2={"way": "S -N", "at": [[-120, 8], [100, 8]]},
+                 V3={"way": "N -S", "at": [[start, other], [300, other]]})  # fmt: skip
+    assert status(made, "passing") == ("broken" if apart < LIMITS.pass_oncoming_m else "kept")
+
+
+def test_nobody_who_keeps_a_lane_changes_or_passes_unlawfully() -> None:
+    made = scene("wide", V1={"way": "S -N", "lane": 0, "at": [[-200, 25], [60, 25]]},
+                 V2={"way": "S -N", "lane": 1, "at": [[-180, 18], [60, 18]]})  # fmt: skip
+    assert not found(made, "lane_change")
+    assert not found(made, "passing")
 
 
 def test_a_bicycle_may_use_the_shoulder() -> None:

@@ -29,6 +29,7 @@ from sgcad_core.formats.openscenario.writing.parts import (
     PlannedEvent,
     at_once,
     group,
+    lane_position,
     positions,
     rounded,
     world_position,
@@ -121,15 +122,14 @@ class EventActor:
         """Where it begins, as a place in a lane if there is one."""
         if self.place is None:
             return world_position(self.move.x_m[0], self.move.y_m[0], wrap_angle(self.move.heading_rad[0]))
-        turned = 0.0 if self.lanes else rounded(self.turn_rad, 8)
-        return _in_lane(self.place, xosc.Orientation(h=turned, reference=xosc.ReferenceContext.relative))
+        return lane_position(self.place, 0.0 if self.lanes else self.turn_rad)
 
     def init_actions(self) -> Iterator[object]:
         """Further Init actions: the route, where its lanes lead over a junction."""
         if self.lanes and self.lanes.route:
             route = xosc.Route(f"{self.move.actor}_route")
             for place in self.lanes.route:
-                route.add_waypoint(_in_lane(place), xosc.RouteStrategy.shortest)
+                route.add_waypoint(lane_position(place), xosc.RouteStrategy.shortest)
             yield xosc.AssignRouteAction(route)
 
     @property
@@ -170,7 +170,7 @@ class EventActor:
         if shift.ahead is None:
             return self.occasions.at(name, self.move.actor, float(self.move.t_s[shift.row]))
         place, x, y = shift.ahead
-        return self.occasions.place(name, self.move.actor, shift.row, (x, y), _in_lane(place))
+        return self.occasions.place(name, self.move.actor, shift.row, (x, y), lane_position(place))
 
     def _path(self) -> PlannedEvent:
         path, name = xosc.Trajectory(f"{self.move.actor}_path", False), self.move.actor
@@ -213,7 +213,7 @@ class EventActor:
         if (meeting := self.meeting) is None:
             return
         name = self.move.actor
-        does = xosc.SynchronizeAction(meeting.master, _in_lane(meeting.there), _in_lane(meeting.here))
+        does = xosc.SynchronizeAction(meeting.master, lane_position(meeting.there), lane_position(meeting.here))
         when = self.occasions.at(f"{name}_in_time", name, meeting.begin_s)
         yield PlannedEvent(f"{name}_meets", f"{name}_with_{meeting.master}", when, does)
 
@@ -262,11 +262,6 @@ def _met(actors: Mapping[str, EventActor]) -> list[EventActor]:
 
 def _stands(move: Trajectory) -> bool:
     return bool(arc_lengths(move.points)[-1] < STANDS_M)
-
-
-def _in_lane(place: LanePlace, facing: xosc.Orientation | None = None) -> xosc.LanePosition:
-    turned = facing or xosc.Orientation()
-    return xosc.LanePosition(rounded(place.s_m), rounded(place.offset_m), str(place.lane), place.road, turned)
 
 
 def _evenly(dimension: xosc.DynamicsDimension, value: float) -> xosc.TransitionDynamics:

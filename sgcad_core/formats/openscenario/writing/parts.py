@@ -10,6 +10,7 @@ from scenariogeneration import xosc
 from scenariogeneration.xosc.enumerations import VersionBase
 
 from sgcad_core.case.records import Floats, Trajectory
+from sgcad_core.formats.openscenario.roads.way import LanePlace
 from sgcad_core.geometry.plane import wrap_angle
 
 CrossSection = tuple[float, float]
@@ -33,6 +34,15 @@ def rounded(value: float | Floats, digits: int = 6) -> float:
 def world_position(x_m: float, y_m: float, heading_rad: float | Floats) -> xosc.WorldPosition:
     """A pose on flat ground."""
     return xosc.WorldPosition(rounded(x_m), rounded(y_m), 0.0, rounded(heading_rad, 8))
+
+
+def lane_position(place: LanePlace, turned_rad: float | None = None) -> xosc.LanePosition:
+    """A place in a lane, and the heading against the lane's direction where it counts."""
+    relative = xosc.ReferenceContext.relative
+    facing = (
+        xosc.Orientation() if turned_rad is None else xosc.Orientation(h=rounded(turned_rad, 8), reference=relative)
+    )
+    return xosc.LanePosition(rounded(place.s_m), rounded(place.offset_m), str(place.lane), place.road, facing)
 
 
 def positions(move: Trajectory, rows: Sequence[int], size: CrossSection = (0.0, 0.0)) -> list[xosc.WorldPosition]:

@@ -10,7 +10,7 @@ import datetime
 import re
 import threading
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -21,6 +21,8 @@ from scenariogeneration.xosc.enumerations import VersionBase
 from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.opendrive.signals import Controller
+from sgcad_core.formats.openscenario.roads.lane_motion import start_place
+from sgcad_core.formats.openscenario.roads.road_network import roads_of
 from sgcad_core.formats.openscenario.writing.entities import center_ahead_m, entity, environment
 from sgcad_core.formats.openscenario.writing.events import EventActor, EventOptions, event_actors
 from sgcad_core.formats.openscenario.writing.parts import (
@@ -29,6 +31,7 @@ from sgcad_core.formats.openscenario.writing.parts import (
     at_once,
     at_time,
     group,
+    lane_position,
     positions,
     rounded,
 )
@@ -36,12 +39,26 @@ from sgcad_core.formats.openscenario.writing.versions import DEFAULT_VERSION, Ve
 from sgcad_core.formats.openscenario.writing.vertices import held_at_standstill, vertex_rows
 from sgcad_core.records.specs import BehaviorSpec
 
-END = "EndTime"
-"""The file's parameter for people who cut a scenario short: when it stops, seconds."""
+END, FRICTION = "EndTime", "Friction"
+"""Parameters of the file: when it stops, seconds; the friction of the road."""
+FACES_RAD = 0.5
+"""An actor that is turned further against its lane begins at a place in the world."""
 _WRITING = threading.Lock()
 DATE = datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC)
 """Fixed, so that equal scenarios are equal files."""
 _NOT_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+@dataclass(frozen=True)
+class Handles:
+    """Parameters by which people change a written scenario, at the values at which it is what was planned.
+
+    `<actor>_TimeScale` (its motion slower above 1) and `<actor>_TimeOffset` (later, seconds) of timed polylines,
+    `<actor>_Speed` (at the start, m/s) of events, `Friction` where the surface is stated. With `xodr` actors begin at
+    places in lanes, where lanes hold them to the millimetre.
+    """
+
+    xodr: str | None = None
 
 
 @contextmanager
@@ -66,6 +83,7 @@ def write_xosc(
     version: Version = DEFAULT_VERSION,
     handover: EventOptions | None = None,
     signals: Sequence[Controller] = (),
+    handles: Handles | None = None,
 ) -> str:
     """An .xosc that moves each actor's box center along its trajectory (positions to 1e-6 m, headings 1e-8 rad).
 
@@ -74,20 +92,26 @@ def write_xosc(
     differ in names and in the surroundings they can express; the motion is the same. With a `handover` the plan is
     written as maneuver events (`events`): near the trajectories until the contact, free after it. `signals`: the states
     of the map's controllers in turn, from the start on.
+    `handles`: parameters and lane places, which leave the motion as it is.
     """
     moves = [origin_motion(actor, t) for actor, t in zip(actors, _paired(actors, trajectories), strict=True)]
     minor, reaches = int(version[-1]), [center_ahead_m(actor) for actor in actors]
     sizes = [(actor.width_m, actor.record.height_m) for actor in actors]
-    timed = [_Timed(held_at_standstill(m), ahead, size) for m, ahead, size in zip(moves, reaches, sizes, strict=True)]
+    timed = [
+        _Timed(held_at_standstill(m), ahead, size, handles)
+        for m, ahead, size in zip(moves, reaches, sizes, strict=True)
+    ]
     told = timed if handover is None else None
     parts = told or event_actors(moves, reaches, handover or EventOptions())
     with library_version(minor):
+        surroundings = environment(behavior, minor)
+        declared = {END: rounded(max(t.t_s[-1] for t in moves))} | _handles(parts, surroundings, handles)
         scenario = xosc.Scenario(
             _NOT_XML.sub("?", name),
             "SG-CADVLM",
-            _parameters(moves),
+            _parameters(declared),
             _entities(actors, minor),
-            _storyboard(parts, environment(behavior, minor)),
+            _storyboard(parts, surroundings, speeds=bool(handles) and told is None),
             _road_network(road_file, signals),
             xosc.Catalog(),
             osc_minor_version=minor,
@@ -112,11 +136,25 @@ def _road_network(road_file: str, signals: Sequence[Controller]) -> xosc.RoadNet
     return network
 
 
-def _parameters(moves: Sequence[Trajectory]) -> xosc.ParameterDeclarations:
-    end = rounded(max(t.t_s[-1] for t in moves))
+def _parameters(told: Mapping[str, float]) -> xosc.ParameterDeclarations:
     declared = xosc.ParameterDeclarations()
-    declared.add_parameter(xosc.Parameter(END, xosc.ParameterType.double, str(end)))
+    for name, value in told.items():
+        declared.add_parameter(xosc.Parameter(name, xosc.ParameterType.double, f"{value:.9g}"))
     return declared
+
+
+def _handles(
+    parts: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.Environment | None, handles: Handles | None
+) -> dict[str, float]:
+    """Names and values of the parameters beside the end; puts the friction's in its place."""
+    found: dict[str, float] = {}
+    for part in parts if handles else ():
+        name = part.move.actor
+        found |= part.clock if isinstance(part, _Timed) else {f"{name}_Speed": rounded(part.first_mps)}
+    if handles and surroundings and surroundings.roadcondition:
+        found[FRICTION] = float(surroundings.roadcondition.friction_scale_factor)
+        surroundings.roadcondition.friction_scale_factor = f"${FRICTION}"
+    return found
 
 
 def _paired(actors: Sequence[ActorInfo], trajectories: Sequence[Trajectory]) -> list[Trajectory]:
@@ -152,13 +190,23 @@ class _Timed:
     move: Trajectory
     ahead_m: float
     size: CrossSection
+    handles: Handles | None = None
 
     @property
     def first_mps(self) -> float:
         return float(self.move.speed_mps[0])
 
-    def start(self) -> xosc.WorldPosition:
-        return positions(self.move, [0])[0]
+    @property
+    def clock(self) -> dict[str, float]:
+        """Parameters of its time with their values."""
+        return {f"{self.move.actor}_TimeScale": 1.0, f"{self.move.actor}_TimeOffset": 0.0}
+
+    def start(self) -> xosc.WorldPosition | xosc.LanePosition:
+        roads = roads_of(self.handles.xodr) if self.handles and self.handles.xodr else None
+        place, turn = start_place(self.move, roads) if roads else (None, 0.0)
+        if place is None or abs(turn) > FACES_RAD:
+            return positions(self.move, [0])[0]
+        return lane_position(place, turn)
 
     def init_actions(self) -> tuple[object, ...]:
         return ()
@@ -168,16 +216,17 @@ class _Timed:
         path = xosc.Trajectory(f"{name}_path", False)
         path.add_shape(xosc.Polyline([rounded(self.move.t_s[k]) for k in rows], positions(self.move, rows, self.size)))
         absolute = xosc.ReferenceContext.absolute
-        follow = xosc.FollowTrajectoryAction(path, xosc.FollowingMode.position, absolute, 1.0, 0.0)
+        scale, offset = [f"${handle}" for handle in self.clock] if self.handles else (1.0, 0.0)
+        follow = xosc.FollowTrajectoryAction(path, xosc.FollowingMode.position, absolute, scale, offset)
         event = PlannedEvent(f"{name}_event", f"{name}_follow", at_once(f"{name}_start"), follow)
         return group(name, {f"{name}_maneuver": [event]})
 
 
 def _storyboard(
-    actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.Environment | None
+    actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.Environment | None, *, speeds: bool
 ) -> xosc.StoryBoard:
     end = at_time("end", f"${END}", xosc.Rule.greaterThan, "stop")
-    board = xosc.StoryBoard(_init(actors, surroundings), end)
+    board = xosc.StoryBoard(_init(actors, surroundings, speeds=speeds), end)
     act = xosc.Act("act", at_once("start"))
     for actor in actors:
         act.add_maneuver_group(actor.group())
@@ -187,7 +236,9 @@ def _storyboard(
     return board
 
 
-def _init(actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.Environment | None) -> xosc.Init:
+def _init(
+    actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.Environment | None, *, speeds: bool
+) -> xosc.Init:
     init = xosc.Init()
     if surroundings:
         init.add_global_action(xosc.EnvironmentAction(surroundings))
@@ -196,5 +247,6 @@ def _init(actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.En
         init.add_init_action(actor.move.actor, xosc.TeleportAction(actor.start()))
         for action in actor.init_actions():
             init.add_init_action(actor.move.actor, action)
-        init.add_init_action(actor.move.actor, xosc.AbsoluteSpeedAction(rounded(actor.first_mps), step))
+        first = f"${actor.move.actor}_Speed" if speeds else rounded(actor.first_mps)
+        init.add_init_action(actor.move.actor, xosc.AbsoluteSpeedAction(first, step))
     return init

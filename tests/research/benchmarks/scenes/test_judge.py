@@ -9,6 +9,7 @@ import pytest
 
 from flows.case_files import case_folder
 from research.benchmarks.scenes.judge import main
+from sgcad_core.formats.openscenario.writing.background import with_background
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from tests.plugins.simulator.fake_esmini import log, make
 from tests.sgcad_core.formats.xosc_samples import actor, trajectory
@@ -39,6 +40,20 @@ def test_a_player_that_agrees_is_counted_as_agreeing(runs, tmp_path, capsys):
     assert judged(runs, tmp_path, ("V1", 0.0, 0.0, 0.0, 10.0, 1.4), ("V2", 12.0, 0.0, 0.0, 0.0, 1.4)) == 0
     row = next(line.split() for line in capsys.readouterr().out.splitlines() if "esmini" in line)
     assert row == ["runs", "esmini", "1/1", "1/1", "0.0000", "0.0000", "1/1"]
+
+
+def test_vehicles_of_the_traffic_are_judged_too(runs, tmp_path, capsys):
+    case = runs / "template" / "c1"
+    info = ACTORS[0].model_copy(update={"id": "traffic1"})
+    track = MOVES[0].model_copy(update={"actor": "traffic1", "y_m": MOVES[0].y_m + 20.0})
+    (case / "scenario.xosc").write_text(with_background((case / "scenario.xosc").read_text(), [info], [track]))
+    case_folder.write_trajectories(case / "trajectories.csv", MOVES, [track])
+    result = json.loads((case / "result.json").read_text())
+    (case / "result.json").write_text(json.dumps(result | {"traffic": {"vehicles": [info.model_dump()]}}))
+    crash = ("V1", 0.0, 0.0, 0.0, 10.0, 1.4), ("V2", 12.0, 0.0, 0.0, 0.0, 1.4)
+    assert judged(runs, tmp_path, *crash, ("traffic1", 0.0, 20.0, 0.0, 10.0, 1.4)) == 0
+    assert judged(runs, tmp_path, *crash, ("traffic1", 0.0, 21.0, 0.0, 10.0, 1.4)) == 1
+    assert "traffic1 at 0.00 s is 1.000 m beside our playing" in " ".join(capsys.readouterr().out.split())
 
 
 def test_one_that_does_not_is_told_with_actor_and_time(runs, tmp_path, capsys):

@@ -108,7 +108,7 @@ def test_of_two_at_even_speed_the_second_meets_the_first():
 def test_the_meeting_holds_when_the_master_is_edited():
     """The point of it: a slower first vehicle is still met, though nothing else was changed."""
     scenario = compile_scenario(STRAIGHT, crossroads(), encoding="events")
-    speed = parse_xml(scenario.xosc, "xosc").find(".//Private[@entityRef='V1']//AbsoluteTargetSpeed").get("value")
+    speed = parse_xml(scenario.xosc, "xosc").find("ParameterDeclarations/*[@name='V1_Speed']").get("value")
     slower = scenario.xosc.replace(f'value="{speed}"', f'value="{float(speed) - 1.0}"', 1)
     assert slower != scenario.xosc
     gaps = [
