@@ -208,7 +208,7 @@ def test_a_second_opinion_that_leads_to_no_scenario_leaves_the_rules_reading(mon
     source = tmp_path / "c1.txt"
     source.write_text(
         "The AV was stopped at a red light on Main Street. An SUV behind it, traveling straight, struck the rear "
-        "of the AV with its front bumper."
+        "front of the AV with its front bumper."
     )
     config = load(settings.ROOT / "configs" / "template.yaml", ("second_opinion=learned", "tracker=jsonl"))
     result = run_case(config, Case(source, "c1"), tmp_path / "out", "d1").result
@@ -225,8 +225,8 @@ def test_the_rules_reading_is_kept_where_the_scenario_of_both_readers_misses_mor
     monkeypatch.setattr("sgcad_core.reading.second_reader.learned_reader.opinion", lambda narrative: turns)
     source = tmp_path / "c1.txt"
     source.write_text(
-        "The AV was traveling north on Main Street. An SUV, traveling south in the opposite direction, struck the front "
-        "of the AV with its front bumper."
+        "The AV was traveling north on Main Street. An SUV, traveling south in the opposite direction, struck the "
+        "front of the AV with its front bumper."
     )
     config = load(settings.ROOT / "configs" / "template.yaml", ("second_opinion=learned", "tracker=jsonl"))
     result = run_case(config, Case(source, "c1"), tmp_path / "out", "d1").result
