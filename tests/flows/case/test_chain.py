@@ -208,7 +208,7 @@ def test_a_second_opinion_that_leads_to_no_scenario_leaves_the_rules_reading(mon
     source = tmp_path / "c1.txt"
     source.write_text(
         "The AV was stopped at a red light on Main Street. An SUV behind it, traveling straight, struck the rear "
-        "front of the AV with its front bumper."
+        "of the AV with its front bumper."
     )
     config = load(settings.ROOT / "configs" / "template.yaml", ("second_opinion=learned", "tracker=jsonl"))
     result = run_case(config, Case(source, "c1"), tmp_path / "out", "d1").result
