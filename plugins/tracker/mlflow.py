@@ -62,7 +62,8 @@ class MlflowTracker(Tracker):
             self._live.add(arm.config)
 
     def log_case(self, config_name: str, params: dict[str, Any], case_dir: Path, result: dict[str, Any]) -> None:
-        """Logs one child run with its trace, figures and files. Raises ConfigError on a bad database."""
+        """Logs one child run with its trace, figures and files. Raises ConfigError on a bad database, FileNotFoundError
+        for one that was moved or deleted meanwhile."""
         store, given = self._store(case_dir.parent.parent), parameters(params)
         parent = parent_of(store, config_name, given)
         if config_name in self._live:
@@ -79,6 +80,7 @@ class MlflowTracker(Tracker):
         log_trace(store, run, spans, tags, _pictures(case_dir) if self.artifacts else {})
         if self.artifacts:
             repository(made.info.artifact_uri, store.uri).log_artifacts(str(case_dir))
+        store.check_file()
         if config_name in self._live and time.monotonic() > parent.next_update:
             _update(parent)
 

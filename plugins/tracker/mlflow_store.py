@@ -84,6 +84,14 @@ class Store:
 
         return TracingClient(self.uri)
 
+    def check_file(self) -> None:
+        """Raises FileNotFoundError where the database is no longer at its place: what is written goes into a file that
+        was moved or deleted."""
+        if self.file and not self.file.is_file():
+            raise FileNotFoundError(
+                f"{self.file} was moved or deleted meanwhile; the next command logs the cases again"
+            )
+
     def identity(self) -> str:
         """Number and creation time of the experiment, read without starting MLflow; empty if they cannot be read.
 

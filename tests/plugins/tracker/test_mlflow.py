@@ -47,6 +47,16 @@ def test_an_arm_has_a_parent_with_its_data_plugins_commit_and_hardware_and_the_m
     assert {f.path for f in client.list_artifacts(children["c1"].info.run_id)} == {"player.html", "attempts"}
 
 
+def test_a_case_counts_as_logged_only_where_the_database_is_still_at_its_place(out, tracker, tmp_path):
+    made = tracker(database=tmp_path / "mlflow.db")
+    log(made, out, "c1")
+    for file in tmp_path.glob("mlflow.db*"):
+        file.rename(tmp_path / f"moved-{file.name}")
+    with pytest.raises(FileNotFoundError, match="moved or deleted meanwhile; the next command logs the cases again"):
+        log(made, out, "c2")
+    assert made.identity(tmp_path) == ""
+
+
 def test_search_needs_no_renaming(out, tracker):
     made = tracker()
     log(made, out, "c1")
