@@ -71,7 +71,7 @@ def test_it_is_read(buggy: str) -> None:
     assert makes.kind_of("a red dune buggy", None) == (buggy, True)
 
 
-def test_it_is_planned_written_and_played(crash: Scenario) -> None:
+def test_it_is_planned_written_and_played(crash: Scenario, crossing: RoadNetwork) -> None:
     assert crash.actors[0].type == BUGGY
     assert (crash.actors[0].length_m, crash.actors[0].width_m) == (3.3, 1.6)
     root = parse_xml(crash.xosc, "xosc")
@@ -80,11 +80,11 @@ def test_it_is_planned_written_and_played(crash: Scenario) -> None:
     assert float(made.get("mass")) == mass_kg(BUGGY, 3.3) == 650.0
     assert float(made.find("Performance").get("maxSpeed")) == 33.0
     assert made.find("Axles") is not None
-    assert {t.actor for t in play(crash.xosc)} == {"V1", "V2", "B1"}
+    assert {t.actor for t in play(crash.xosc, crossing.xodr)} == {"V1", "V2", "B1"}
 
 
 def test_its_motion_is_checked_and_it_can_be_the_ego(crash: Scenario, crossing: RoadNetwork) -> None:
-    tracks = play(crash.xosc)
+    tracks = play(crash.xosc, crossing.xodr)
     turned = [t.model_copy(update={"heading_rad": t.heading_rad + np.pi / 2}) for t in tracks]
     sideways = crash.model_copy(update={"planned": tuple(turned)})
     evidence = Evidence(report=CrashReport(case="c", narrative=TEXT), network=crossing)
@@ -95,8 +95,8 @@ def test_its_motion_is_checked_and_it_can_be_the_ego(crash: Scenario, crossing: 
     assert staging_for(script, "V1").ego == "V1"
 
 
-def test_it_is_shown_in_the_player_and_in_the_drawing(crash: Scenario) -> None:
-    track = next(t for t in play(crash.xosc) if t.actor == "V1")
+def test_it_is_shown_in_the_player_and_in_the_drawing(crash: Scenario, crossing: RoadNetwork) -> None:
+    track = next(t for t in play(crash.xosc, crossing.xodr) if t.actor == "V1")
     shown = _actor(Mover(crash.actors[0], track, "#fff"))
     assert (shown["type"], shown["outline"]) == (BUGGY, "cab")
     pen = Pen(Random(0), 120, 120, 6.0, 0.0, (0.0, 0.0))

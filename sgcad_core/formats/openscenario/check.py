@@ -35,12 +35,14 @@ ORIGIN_M = 1e-3
 MAX_FINDINGS = 20
 _SCHEMAS = {"0": "1_0", "1": "1_1", "2": "1_2", "3": "1_3_1"}
 _NAMED = ("Story", "Act", "ManeuverGroup", "Maneuver", "Event", "Action")
+_ON_A_MAP = ("LanePosition", "RelativeLanePosition", "RoadPosition", "RelativeRoadPosition")
 
 
 def xosc_findings(xosc: str, xodr: str | None, road_file: str = "road.xodr") -> list[Finding]:
     """Everything wrong, worst first, at most 20; an empty list is a pass.
 
-    Schema faults stand alone; then references, places and sizes; what holds so far is played. Raises
+    Schema faults stand alone; then references, places and sizes; what holds so far is played, unless it needs a map
+    and none is given. Raises
     MissingTool without scenariogeneration's schemas.
     """
     try:
@@ -50,11 +52,16 @@ def xosc_findings(xosc: str, xodr: str | None, road_file: str = "road.xodr") -> 
             for line, message in schema_errors(_schema_of(root), root.element)
         ]
         found = broken or list(islice(_content(root, xodr, road_file), MAX_FINDINGS))
-        if not found:
+        if not found and (xodr is not None or not _on_a_map(root)):
             play(xosc, xodr)
     except InvalidOutput as fault:
         return list(fault.findings)[:MAX_FINDINGS] or [_finding(str(fault))]
     return found[:MAX_FINDINGS]
+
+
+def _on_a_map(root: XmlNode) -> bool:
+    """Whether some place of the file is known on a map only."""
+    return any(next(root.element.iter(name), None) is not None for name in _ON_A_MAP)
 
 
 def _content(root: XmlNode, xodr: str | None, road_file: str) -> Iterator[Finding]:
