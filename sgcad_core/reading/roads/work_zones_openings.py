@@ -70,13 +70,18 @@ def median_opening(statements: Sequence[Statement]) -> Source | None:
 
 
 def with_entered_median(roads: list[MergedRoad], statements: Sequence[Statement]) -> list[MergedRoad]:
-    """The roads, of which the only street has the median that a vehicle is told to enter, if none is told of it."""
-    streets = [road for road in roads if road.kind not in JOINING]
+    """The roads, of which the street of the vehicle that is told to enter a median has that one, if none is told of it.
+
+    Among several streets it is the only one on which that vehicle drives.
+    """
     found = ((t, m) for t in _story(statements) if (m := rule("median.entered").search(t.text)))
-    first = next(found, None)
-    if first is None or len(streets) != 1 or streets[0].lanes.median or streets[0].lanes.divided is not None:
+    if (first := next(found, None)) is None:
         return roads
     told, match = first
+    streets = [road for road in roads if road.kind not in JOINING]
+    streets = [road for road in streets if told.subject in road.vehicles] if len(streets) > 1 else streets
+    if len(streets) != 1 or streets[0].lanes.median or streets[0].lanes.divided is not None:
+        return roads
     kind: Median = "raised" if rule("median.hard").search(match[0]) else "grass"
     where = {**streets[0].lanes.where, "median": Source(told.number, match[0], "median.entered")}
     streets[0].lanes = replace(streets[0].lanes, median=kind, where=where)

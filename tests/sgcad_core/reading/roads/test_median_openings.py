@@ -49,6 +49,14 @@ def test_who_only_crosses_the_median_needs_no_opening() -> None:
     assert read(text).roads.opening is None
 
 
+def test_of_two_streets_the_one_of_the_vehicle_that_enters_a_median_has_it() -> None:
+    text = (
+        "V1 was traveling north toward an intersection and V2 was traveling east toward it. The front "
+        "of V2 struck the left side of V1. V1 departed the roadway onto a raised median."
+    )
+    assert {road.axis: road.lanes.median for road in read(text).roads.roads} == {"N": "raised", "E": None}
+
+
 @pytest.mark.parametrize("text", [ACROSS, WAITS, BARE])
 def test_openings_pass_what_roads_pass_and_the_crash_happens(text: str) -> None:
     net, made = written(text)
