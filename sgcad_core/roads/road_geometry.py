@@ -37,7 +37,8 @@ AISLE_LANE_M = 3.6
 """Half of an aisle between square stalls (24 ft)."""
 ORDER: tuple[Beside, ...] = get_args(Beside)
 STEP_M = 3.0
-TAPER_M = 30.0
+TAPER_M, TAPER_PER_M = 30.0, 10.0
+"""Length over which a gap changes: at least, and for each metre by which a lane swings aside."""
 WITHIN_M = 15.0
 """From a node to the corners of a junction of wide roads: up to there a gap keeps the width that it has at the node."""
 OPENING_M = 15.0
@@ -85,17 +86,18 @@ class Roadway:
         (start, end), (at_start, at_end) = self.end_gaps_m, self.opens
         if direction == "backward":
             start, end, at_start, at_end = end, start, at_end, at_start
-        from_start = _eased(along, float(along[-1]), at_start)
-        from_end = _eased(along[-1] - along, float(along[-1]), at_end)
+        tapers = [max(TAPER_M, TAPER_PER_M * abs(self.gap_m - gap) / 2) for gap in (start, end)]
+        from_start = _eased(along, float(along[-1]), tapers[0], at_start)
+        from_end = _eased(along[-1] - along, float(along[-1]), tapers[1], at_end)
         return start + (self.gap_m - start) * from_start + (end - self.gap_m) * (1 - from_end)
 
 
-def _eased(from_end: Floats, length_m: float, opens: bool) -> Floats:
+def _eased(from_end: Floats, length_m: float, taper_m: float, opens: bool) -> Floats:
     """0 to 1 with level ends, away from the end of a road; the last metres lie within the junction.
 
     Where a road opens into a roundabout, level at 1 only: it enters at an angle.
     """
-    taper, held = (ISLAND_M, 0.0) if opens else (TAPER_M, min(WITHIN_M, length_m / 4))
+    taper, held = (ISLAND_M, 0.0) if opens else (taper_m, min(WITHIN_M, length_m / 4))
     x = np.clip((from_end - held) / max(min(taper, length_m / 2 - held), 1e-9), 0.0, 1.0)
     return np.asarray(x * (2 - x) if opens else x * x * (3 - 2 * x), dtype=float)
 

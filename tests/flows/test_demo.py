@@ -64,7 +64,7 @@ def test_both_rest_in_the_intersection(shown):
     root = etree.parse(str(folder / "road.net.xml")).getroot()
     (shape,) = (j.get("shape") for j in root.iter("junction") if j.get("type") == "traffic_light")
     polygon = [tuple(map(float, point.split(","))) for point in shape.split()]
-    around = ((0.0, 0.0), (0.5, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, -0.5))  # the middle of a car, to half a metre
+    around = [(x, y) for x in (-1.0, 0.0, 1.0) for y in (-1.0, 0.0, 1.0)]  # as for the account: within 1.5 m of it
     ends = rest_of(folder).values()
     assert all(any(inside(polygon, x + dx, y + dy) for dx, dy in around) for x, y, _ in ends)
 
