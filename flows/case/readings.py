@@ -13,12 +13,19 @@ from sgcad_core.account import Account
 from sgcad_core.case.records import CrashReport
 
 RULES, LEARNED = "the rules' reading", "the reading of the rules and the learned reader"
+_MANY = 3
+"""Vehicles of a crash of which other readings are tried at most."""
 
 
 def other_readings(report: CrashReport) -> Iterator[tuple[str, CrashReport]]:
-    """(name, report) of each other reading, where a second reader changed something; none twice."""
+    """(name, report) of each other reading, where a second reader changed something; none twice.
+
+    None of a crash of many vehicles: its search takes long.
+    """
     opinion, seen = report.opinion, [report.reading.facts]
     if opinion is None or all(fact.basis != "model" for fact in report.reading.facts):
+        return
+    if len(report.reading.crash.vehicles) > _MANY:
         return
     without_answers = opinion.model_copy(update={"answered": None})
     for name, said in ((LEARNED, without_answers if opinion.guesses else None), (RULES, None)):

@@ -39,13 +39,16 @@ _TARGETS_S = (1.2, 0.5, 2.5, 4.4)
 _WAYS, _AIMED_WAYS = 6, 3
 _TRIES, _RUNS = 8, 6
 """Scenes that are settled for one contact at most."""
-_STEERS, _STEERED_TRIES = 6, 2
-"""Ways in which a partner steers so that the stated sides meet, and the scenes that are settled for each."""
+_STEERS, _STEERED_TRIES, _STEER_COSTS = 6, 2, 3
+"""Ways in which a partner steers so that the stated sides meet, the scenes that are settled for each, and what a way
+costs beside."""
 _BODIES = 60
 """Bodies that are settled again in a whole scene so that further contacts come about on the stated sides; scenes of
 many take long."""
+_ACROSS, _ALONG_RAD = 2, math.radians(50.0)
+"""Weight of a vehicle that stands across its road, at more than this angle: as much as both sides of a contact."""
 _UNTOLD = 3
-"""An untold contact weighs more than both sides of a told one."""
+"""Weight of an untold contact: more than of both sides of a told one."""
 _OUTSIDE, _STARTS_M = 20.0, 4.0
 _GRAZE_M, _FAR_M = 0.4, 14.0
 """Overlap of a graze, and how far aside of its line a vehicle is led into a contact."""
@@ -94,6 +97,7 @@ class LaterMeetings:
                 break
             self._place(tracks)
             missed = _UNTOLD * self.order.untold + sides_missed(self.scene, contact)
+            missed += _ACROSS * sum(map(self._stands_across, tracks))
             if self.order.holds(pair_of(contact)) and (best is None or missed < best[0]):
                 best = missed, tracks
             for track in tracks:
@@ -104,9 +108,17 @@ class LaterMeetings:
         self._place(best[1] if best else ())
         return best[0] if best else math.inf
 
-    def _goes_on(self) -> bool:
-        """Whether another try may be made for stated sides alone; counts it."""
-        self.left -= len(self.scene.tracks)
+    def _stands_across(self, track: Track) -> bool:
+        """Whether a vehicle stands across its road, where it is neither parked nor waits."""
+        if not track.motion.standing:
+            return False
+        course = self.role_of(track.actor).course
+        along = float(course.path.poses([place_near(course, track.poses[0]).station_m])[0, 2])
+        return abs(math.sin(float(track.poses[0, 2]) - along)) > math.sin(_ALONG_RAD)
+
+    def _goes_on(self, settles: int = 1) -> bool:
+        """Whether another try of so many settled scenes may be made for stated sides alone; counts it."""
+        self.left -= settles * len(self.scene.tracks)
         return self.left >= 0
 
     def _place(self, tracks: tuple[Track, ...]) -> None:
@@ -122,7 +134,7 @@ class LaterMeetings:
         best, place = scene.runs, scene.tracks.pop(new, None)
         steers = runs_aside(scene, partner, self.order.after) if self._may_steer(least, sides) else iter(())
         for run in islice(steers, _STEERS):
-            if not self._goes_on():
+            if not self._goes_on(_STEER_COSTS):
                 break
             scene.runs = with_run(scene, partner, run)
             scene.settle()
@@ -154,7 +166,7 @@ class LaterMeetings:
             yield from (standing_track(self.scene, role.actor, pose) for pose in islice(place.poses(after), _TRIES))
         ways: list[list[Option]] = []
         for want in (sides, None) if wants is None else wants:
-            for number, target_s in enumerate(_TARGETS_S):
+            for number, target_s in enumerate(_TARGETS_S if wants is None else _TARGETS_S[:1]):
                 if number == len(ways):
                     ways.append(self._ways(role, partner, sides, after + round(target_s / STEP_S), plain=not number))
                 for span in _SOON_S if more else _SPANS_S:
