@@ -97,9 +97,11 @@ class CaseRun:
     def _try_other_readings(self) -> None:
         """Take another reading of the report whose scenario has more of what is told, if that of all readers lacks
         something."""
+        if self.report is None or not readings.has_others(self.report):
+            return
         first = account_so_far(self.record())
         least = readings.missed(first)
-        for name, report in readings.other_readings(self.report) if self.report and least else ():
+        for name, report in readings.other_readings(self.report) if least else ():
             kept = {key: getattr(self, key) for key in _COURSE}
             self.report, self.outcomes, self.execution, self.metrics = report, {}, None, None
             with suppress(InvalidOutput, SimulationFailed):

@@ -17,20 +17,18 @@ _MANY = 3
 """Vehicles of a crash of which other readings are tried at most."""
 
 
-def other_readings(report: CrashReport) -> Iterator[tuple[str, CrashReport]]:
-    """(name, report) of each other reading, where a second reader changed something; none twice.
+def has_others(report: CrashReport) -> bool:
+    """Whether a second reader changed something; not of a crash of many vehicles, whose search takes long."""
+    if report.opinion is None or len(report.reading.crash.vehicles) > _MANY:
+        return False
+    return any(fact.basis == "model" for fact in report.reading.facts)
 
-    None of a crash of many vehicles: its search takes long.
-    """
+
+def other_readings(report: CrashReport) -> Iterator[tuple[str, CrashReport]]:
+    """(name, report) of each other reading of a report with a second reader's opinion; none twice."""
     opinion, seen = report.opinion, [report.reading.facts]
-    if opinion is None or all(fact.basis != "model" for fact in report.reading.facts):
-        return
-    if len(report.reading.crash.vehicles) > _MANY:
-        return
-    without_answers = opinion.model_copy(update={"answered": None})
-    for name, said in ((LEARNED, without_answers if opinion.guesses else None), (RULES, None)):
-        if name == LEARNED and said is None:
-            continue
+    learned = [(LEARNED, opinion.model_copy(update={"answered": None}))] if opinion and opinion.guesses else []
+    for name, said in (*learned, (RULES, None)):
         other = report.model_copy(update={"opinion": said})
         if other.reading.facts not in seen:
             seen.append(other.reading.facts)

@@ -10,7 +10,7 @@ import numpy as np
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import Floats, Trajectory
 from sgcad_core.case.traffic import Background
-from sgcad_core.geometry.plane import box_gaps
+from sgcad_core.geometry.plane import first_overlap
 from sgcad_core.handover.drive import Drive
 
 
@@ -40,6 +40,6 @@ def touched(drive: Drive) -> list[str]:
     size = drive.staging.script.sizes[ego.actor]
     found: list[tuple[int, str]] = []
     for info, track in replayed(drive, len(ego.t_s)):
-        hits = np.flatnonzero(box_gaps(ego.pose, size, track.pose, (info.length_m, info.width_m)) <= 0.0)
-        found += [(int(hits[0]), info.id)] if len(hits) else []
+        hit = first_overlap(ego.pose, size, track.pose, (info.length_m, info.width_m))
+        found += [] if hit is None else [(hit, info.id)]
     return [name for _, name in sorted(found)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,14 @@ from plugins.backbone import hf_gguf
 from plugins.backbone.engine import packing
 from sgcad_core import settings
 from sgcad_core.errors import ConfigError, MissingTool
+
+_BILLIONS = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[bB](?![a-zA-Z])")
+
+
+def billions_in(name: str) -> float | None:
+    """The number of parameters that a model's name tells ("Qwen3-VL-8B"), 1e9; None where it tells none."""
+    found = _BILLIONS.findall(name)
+    return float(found[-1]) if found else None
 
 
 def lacks(model: str, revision: str | None, device_map: Any, quantization: str) -> tuple[str, ...]:

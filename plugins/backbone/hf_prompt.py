@@ -40,6 +40,16 @@ class Pictured(Protocol):
         """How many placeholder tokens the picture takes."""
 
 
+class TextOnly:
+    """A family whose prompts hold no pictures."""
+
+    image_token: int | None = None
+
+    def tokens_of(self, picture: Picture) -> int:
+        """None: no picture is shown."""
+        return 0
+
+
 class Prompter:
     """Writes prompts for one loaded model."""
 

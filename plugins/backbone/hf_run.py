@@ -18,9 +18,9 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
-from plugins.backbone.prompt import Parts
+from plugins.backbone.prompt import EarlierAnswers, Parts, parts, subject, with_previous
 from sgcad_core.asking.json_field_spans import field_spans, first_tokens, grounding, is_refusal, name_of
-from sgcad_core.case.records import Finding, Generation, Token
+from sgcad_core.case.records import Context, Finding, Generation, Query, Token
 from sgcad_core.errors import BadInput, ConfigError, InvalidOutput
 from sgcad_core.plugin_calls import fault_of
 from sgcad_core.settings import cache_home
@@ -221,6 +221,18 @@ def shared_model(stamp: str, name: str, revision: str | None, settings: Mapping[
             running = _RUNNING[key] = start_model(name, revision, settings, **how)
             weakref.finalize(running, running.engine.end)
         return running
+
+
+def answered(
+    running: RunningModel, earlier: EarlierAnswers, context: Context, query: Query, prior: Parts | None, **settings: Any
+) -> Generation:
+    """A query's answer, which a repair goes on from. `prior`: the row without context; `settings`: more of `Call`."""
+    about = subject(context, query)
+    before, draft = earlier.before(about, query)
+    rows = (with_previous(parts(context, query), before), with_previous(prior, before) if prior else None)
+    generation, ids = running.answer(Call(*rows, schema=query.answer_schema, draft=draft, **settings))
+    earlier.note(about, generation.text, ids)
+    return generation
 
 
 def start_model(

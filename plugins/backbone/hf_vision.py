@@ -7,7 +7,6 @@ Text models work too; they see no diagrams. Needs no torchvision.
 from __future__ import annotations
 
 import hashlib
-import re
 import threading
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -15,7 +14,7 @@ from typing import Any, ClassVar, Literal
 from pydantic import Field, PrivateAttr, model_validator
 
 from plugins.backbone import hf_gguf, hf_machine, hf_run
-from plugins.backbone.prompt import EarlierAnswers, Parts, parts, subject, with_previous
+from plugins.backbone.prompt import EarlierAnswers, Parts, parts
 from sgcad_core import settings
 from sgcad_core.case.records import Context, Generation, Query
 from sgcad_core.interfaces import Backbone, Decoder
@@ -25,7 +24,6 @@ _WHOLE_BYTES = 1 << 24
 BYTES = {"float32": 4.0, "bfloat16": 2.0, "float16": 2.0, "native": 2.0, "auto": 2.0}
 QUANTIZED = {"int8": 1.1, "int4": 0.62, "fp8": 1.1}
 """Bytes a parameter; what is kept in 16 bits (embeddings, norms, the vision tower) adds to a byte and a half byte."""
-_BILLIONS = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[bB](?![a-zA-Z])")
 
 
 class HfVision(Backbone):
@@ -121,23 +119,18 @@ class HfVision(Backbone):
         window), ConfigError or MissingTool (the model cannot be loaded or batched).
         """
         running = self._loaded()
-        about = subject(context, query)
-        before, ids = self._answers.before(about, query)
-        prior = self._contrasted(context, query, decoder)
-        call = hf_run.Call(
-            with_context=with_previous(parts(context, query), before),
-            without_context=with_previous(prior, before) if prior else None,
-            schema=query.answer_schema,
+        return hf_run.answered(
+            running,
+            self._answers,
+            context,
+            query,
+            self._contrasted(context, query, decoder),
             policy=decoder,
             seed=seed,
             max_new_tokens=self.max_new_tokens,
-            draft=ids,
             truncate=self.truncate,
             views=self.views,
         )
-        generation, ids = running.answer(call)
-        self._answers.note(about, generation.text, ids)
-        return generation
 
     def _contrasted(self, context: Context, query: Query, decoder: Decoder) -> Parts | None:
         if not (decoder.reads_prior() or self.always_ground):
@@ -189,5 +182,5 @@ def weights_gb(folder: Path, name: str, dtype: str, quantization: str) -> float 
     if stored:
         as_stored = dtype == "auto" and quantization == "none"
         return stored / 1e9 * (1.0 if as_stored else per_parameter / 2.0)
-    found = _BILLIONS.findall(Path(name).name)
-    return float(found[-1]) * per_parameter if found else None
+    billions = hf_machine.billions_in(Path(name).name)
+    return billions * per_parameter if billions else None

@@ -12,7 +12,7 @@ from typing import ClassVar
 from pydantic import Field, PrivateAttr, field_validator
 
 from plugins.backbone import hf_gguf, hf_run
-from plugins.backbone.prompt import EarlierAnswers, Parts, parts, subject, with_previous
+from plugins.backbone.prompt import EarlierAnswers, Parts, parts
 from sgcad_core.case.records import Context, Generation, Query
 from sgcad_core.errors import ConfigError
 from sgcad_core.interfaces import Backbone, Decoder
@@ -80,22 +80,17 @@ class LlamaCpp(Backbone):
         (the file cannot be opened, or the decoder contrasts pictures).
         """
         running = self._started()
-        about = subject(context, query)
-        before, ids = self._answers.before(about, query)
-        prior = self._contrasted(context, query, decoder)
-        call = hf_run.Call(
-            with_context=with_previous(parts(context, query), before),
-            without_context=with_previous(prior, before) if prior else None,
-            schema=query.answer_schema,
+        return hf_run.answered(
+            running,
+            self._answers,
+            context,
+            query,
+            self._contrasted(context, query, decoder),
             policy=decoder,
             seed=seed,
             max_new_tokens=self.max_new_tokens,
-            draft=ids,
             truncate=self.truncate,
         )
-        generation, ids = running.answer(call)
-        self._answers.note(about, generation.text, ids)
-        return generation
 
     def _contrasted(self, context: Context, query: Query, decoder: Decoder) -> Parts | None:
         if not (decoder.reads_prior() or self.always_ground):

@@ -188,6 +188,11 @@ def road_of(edge: str) -> tuple[str, Literal["forward", "backward"]]:
     return (edge[1:], "backward") if edge.startswith("-") else (edge, "forward")
 
 
+def edge_of(lane: str) -> str:
+    """The edge of a lane's id."""
+    return lane.rpartition("_")[0]
+
+
 # ------------------------------------------------------------------ counting
 def segments(graph: LaneGraph) -> list[dict[str, str | int]]:
     """Roads with their passenger lanes: [{"id", "lanes_forward", "lanes_backward"}], in the network's order.

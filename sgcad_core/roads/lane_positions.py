@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
+from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph, edge_of
 
 _THROUGH = "through"
 
@@ -24,7 +24,7 @@ class Position(NamedTuple):
 
 def position(graph: LaneGraph, lane: str, side: int = 0) -> Position | None:
     """Where a lane for cars, or the one on some side of it (1: left), lies among those of its edge; None for others."""
-    edge = graph.edges.get(lane.rpartition("_")[0])
+    edge = graph.edges.get(edge_of(lane))
     lanes = edge.laid_lanes if edge else ()
     place = next((i + side for i, other in enumerate(lanes, 1) if other.id == lane), None)
     if edge is None or place is None or not 1 <= place <= len(lanes):

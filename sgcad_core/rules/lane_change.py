@@ -17,7 +17,7 @@ import numpy as np
 from sgcad_core.geometry.distances import nearest_on
 from sgcad_core.geometry.plane import Floats, headings, prolonged
 from sgcad_core.metrics.lane_places import PLACES
-from sgcad_core.roads.lane_graph import Lane, LaneGraph, road_of
+from sgcad_core.roads.lane_graph import Lane, LaneGraph, edge_of, road_of
 from sgcad_core.rules.records import Mover, RuleFinding, RuleLimits, RuleScene, Status
 
 _OWN = (PLACES.index("lane"), PLACES.index("beyond"))
@@ -61,7 +61,7 @@ def changes(scene: RuleScene, mover: Mover) -> Iterator[Change]:
             yield Change(mover, lane, _begin(scene, mover, lane, k), k, touched=False)
     last = len(lanes) - 1
     if mover.until == last and own[last]:
-        edge = scene.graph.edges[lanes[last].rpartition("_")[0]]
+        edge = scene.graph.edges[edge_of(lanes[last])]
         for lane in edge.car_lanes:
             if lane.id != lanes[last] and reach_m(mover, lane)[last] > scene.limits.enters_m:
                 yield Change(mover, lane, _begin(scene, mover, lane, last), last, touched=True)
@@ -129,11 +129,11 @@ def _begin(scene: RuleScene, mover: Mover, lane: Lane, k: int) -> int:
 
 def _aside(before: str, now: str) -> bool:
     """Whether two lanes lie beside each other: of one road, in the same or the other direction."""
-    one, two = (road_of(lane.rpartition("_")[0])[0] for lane in (before, now))
+    one, two = (road_of(edge_of(lane))[0] for lane in (before, now))
     return bool(before and now) and before != now and one == two
 
 
 def lane_of(graph: LaneGraph, name: str) -> Lane:
     """The lane of an id."""
-    edge = graph.edges[name.rpartition("_")[0]]
+    edge = graph.edges[edge_of(name)]
     return next(one for one in edge.lanes if one.id == name)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from sgcad_core.geometry.plane import runs
 from sgcad_core.metrics.drivability import STEP_S
 from sgcad_core.metrics.lane_places import PLACES
+from sgcad_core.roads.lane_graph import edge_of
 from sgcad_core.roads.surface import RoadSurface, road_surface
 from sgcad_core.rules.records import Mover, RuleFinding, RuleScene, lasts_s
 
@@ -85,7 +86,7 @@ def _outside(scene: RuleScene, mover: Mover) -> NDArray[np.bool_]:
 
 
 def _type(scene: RuleScene, lane: str) -> str:
-    edge = scene.graph.edges.get(lane.rpartition("_")[0])
+    edge = scene.graph.edges.get(edge_of(lane))
     return next((one.type for one in edge.lanes if one.id == lane), "") if edge else ""
 
 

@@ -20,7 +20,7 @@ from sgcad_core.geometry.distances import distance_to, nearest_on
 from sgcad_core.geometry.plane import prolonged
 from sgcad_core.kinds import UNPAINTED
 from sgcad_core.metrics.lane_places import PLACES
-from sgcad_core.roads.lane_graph import Edge, LaneGraph, edge_id, road_of
+from sgcad_core.roads.lane_graph import Edge, LaneGraph, edge_id, edge_of, road_of
 from sgcad_core.rules.lane_change import FAR_M, lane_of
 from sgcad_core.rules.lane_keeping import ALIKE, opposing_stretches, outside_stretches, passed_by
 from sgcad_core.rules.records import Mover, RuleFinding, RuleScene, Status, lasts_s
@@ -61,7 +61,7 @@ def passing(scene: RuleScene) -> Iterator[RuleFinding]:
 
 def _over_the_line(scene: RuleScene, mover: Mover, other: Mover, span: tuple[int, int]) -> _Why:
     """The first rule of several that is broken; else what the center line says."""
-    edge = scene.graph.edges[mover.steps.lanes[span[0]].rpartition("_")[0]]
+    edge = scene.graph.edges[edge_of(mover.steps.lanes[span[0]])]
     seconds, part = lasts_s(span), slice(span[0], span[1] + 1)
     if (near := _oncoming(scene, mover, span)) and near[0] < scene.limits.pass_oncoming_m:
         return _Why("broken", f"{near[1]} comes towards it", near[0], scene.limits.pass_oncoming_m, "m")
@@ -106,12 +106,11 @@ def _to_junction(graph: LaneGraph, mover: Mover, span: tuple[int, int]) -> float
     part = slice(span[0], span[1] + 1)
     least = 0.0 if (mover.steps.codes[part] == _JUNCTION).any() and _crossroads(graph, mover, span) else np.inf
     for name in dict.fromkeys(mover.steps.lanes[part]):
-        edge = graph.edges.get(name.rpartition("_")[0])
+        edge = graph.edges.get(edge_of(name))
         if edge is None or _roads_at(graph, edge.from_node) < 3:
             continue
         # on the other side it drives towards the node from which that lane comes
-        shape = next(one.shape for one in edge.lanes if one.id == name)
-        at = nearest_on(prolonged(shape, 1.0), mover.front[part])
+        at = nearest_on(prolonged(lane_of(graph, name).shape, 1.0), mover.front[part])
         here = np.array([lane == name for lane in mover.steps.lanes[part]])
         least = min(least, float((at.station_m[here] - 1.0).min()))
     return least
@@ -120,7 +119,7 @@ def _to_junction(graph: LaneGraph, mover: Mover, span: tuple[int, int]) -> float
 def _crossroads(graph: LaneGraph, mover: Mover, span: tuple[int, int]) -> bool:
     """Whether a node of a crossed junction joins three roads and more."""
     names = {mover.steps.lanes[max(span[0] - 1, 0)], *mover.steps.lanes[span[0] : span[1] + 2]} - {""}
-    edges = [graph.edges[n.rpartition("_")[0]] for n in names if n.rpartition("_")[0] in graph.edges]
+    edges = [graph.edges[edge_of(n)] for n in names if edge_of(n) in graph.edges]
     return any(_roads_at(graph, node) > 2 for e in edges for node in (e.from_node, e.to_node))
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sgcad_core.formats.opendrive.signals import posted_mph
 from sgcad_core.formats.sumo.parameters import LIMIT
 from sgcad_core.geometry.plane import runs
-from sgcad_core.roads.lane_graph import Edge, LaneGraph
+from sgcad_core.roads.lane_graph import Edge, LaneGraph, edge_of
 from sgcad_core.rules.records import Mover, RuleFinding, RuleScene, Status, lasts_s
 from sgcad_core.units import MPS_PER_MPH
 
@@ -78,5 +78,5 @@ def _carried(lanes: tuple[str, ...]) -> list[str]:
 
 
 def _named(graph: LaneGraph, lane: str) -> EdgeLimit | None:
-    edge = graph.edges.get(lane.rpartition("_")[0])
+    edge = graph.edges.get(edge_of(lane))
     return limit_of(edge, int(lane.rpartition("_")[2])) if edge and lane.rpartition("_")[2].isdigit() else None

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from plugins.backbone import hf_gguf
+from plugins.backbone import hf_gguf, hf_machine
 from plugins.backbone.llama import header, library
 from plugins.backbone.llama.rows import cells
 from sgcad_core.errors import ConfigError, MissingTool
@@ -22,7 +22,6 @@ from sgcad_core.errors import ConfigError, MissingTool
 _PER_PARAMETER = {"Q2": 0.42, "Q3": 0.5, "Q4": 0.62, "Q5": 0.72, "Q6": 0.83, "Q8": 1.07, "F16": 2.0, "BF16": 2.0}
 """Bytes a parameter by the packing that stands in a file's name."""
 _PACKED = re.compile(r"(?<![A-Za-z])(BF16|F16|Q[2-8])(?![0-9])", re.IGNORECASE)
-_BILLIONS = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[bB](?![a-zA-Z])")
 _PROMPT, _ANSWER = 3000, 300
 """Tokens of a question and an answer that the expectation is told for."""
 _PRODUCTS, _READING = 0.7, 0.25
@@ -48,8 +47,8 @@ def weights_gb(model: str, window: int, reports: int) -> float | None:
     found = _header(model)
     if found is None:
         name = Path(model).name
-        packed, size = _PACKED.search(name), _BILLIONS.findall(name)
-        return float(size[-1]) * _PER_PARAMETER.get(packed[1].upper(), 0.62) if packed and size else None
+        packed, billions = _PACKED.search(name), hf_machine.billions_in(name)
+        return billions * _PER_PARAMETER.get(packed[1].upper(), 0.62) if packed and billions else None
     return (found.size + found.cell_bytes * cells(_window(found, window), reports)) / 1e9
 
 

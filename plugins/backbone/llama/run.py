@@ -9,9 +9,8 @@ from weakref import WeakValueDictionary
 
 from plugins.backbone import hf_gguf
 from plugins.backbone.engine.loop import Engine
-from plugins.backbone.engine.records import Picture
 from plugins.backbone.hf_load import Loaded
-from plugins.backbone.hf_prompt import Prompter
+from plugins.backbone.hf_prompt import Prompter, TextOnly
 from plugins.backbone.hf_run import RunningModel
 from plugins.backbone.llama.library import Model
 from plugins.backbone.llama.rows import LlamaRows
@@ -28,16 +27,6 @@ class Fields:
     threads: int | None
     gpu_layers: int
     flash: bool | None
-
-
-class TextOnly:
-    """A family whose prompts hold no pictures."""
-
-    image_token: int | None = None
-
-    def tokens_of(self, picture: Picture) -> int:
-        """None: no picture is shown."""
-        return 0
 
 
 _RUNNING: WeakValueDictionary[str, RunningModel] = WeakValueDictionary()

@@ -11,9 +11,9 @@ from typing import Any
 
 from plugins.backbone import hf_gguf
 from plugins.backbone.engine.grammar import GrammarCompiler
-from plugins.backbone.engine.records import Answer, Picture, Request
+from plugins.backbone.engine.records import Answer, Request
 from plugins.backbone.hf_load import Loaded, load_tokenizer
-from plugins.backbone.hf_prompt import Prompter
+from plugins.backbone.hf_prompt import Prompter, TextOnly
 from plugins.backbone.hf_run import RunningModel, end_tokens
 from plugins.backbone.server.http import ServerHttp
 from plugins.backbone.server.llama_cpp import LlamaCpp
@@ -28,16 +28,6 @@ _SAMPLE = '{"legs":[{"bearing":"NE","lanes_in":2}]} V1 (a 2009 Ford) went 35 mph
 """A text in which tokenizers of different models differ."""
 _UNBOUNDED = 1 << 30
 """The window of a server that tells none: it will refuse what is too long."""
-
-
-class TextOnly:
-    """A family whose prompts hold no pictures."""
-
-    image_token: int | None = None
-
-    def tokens_of(self, picture: Picture) -> int:
-        """None: no picture is sent."""
-        return 0
 
 
 @dataclass(frozen=True)

@@ -42,8 +42,7 @@ def xosc_findings(xosc: str, xodr: str | None, road_file: str = "road.xodr") -> 
     """Everything wrong, worst first, at most 20; an empty list is a pass.
 
     Schema faults stand alone; then references, places and sizes; what holds so far is played, unless it needs a map
-    and none is given. Raises
-    MissingTool without scenariogeneration's schemas.
+    and none is given. Raises MissingTool without scenariogeneration's schemas.
     """
     try:
         root = read_root(xosc)

@@ -198,20 +198,31 @@ def test_a_second_opinion_needs_a_model(config_file):
         load(config_file("one", second_opinion="mini_gist"))
 
 
-def test_a_second_opinion_that_leads_to_no_scenario_leaves_the_rules_reading(monkeypatch, tmp_path):
+def second_reader_says(monkeypatch, other):
+    """Lets the learned reader say what the other vehicle does, with much confidence."""
     from sgcad_core.records.second_reader import Heard, Opinion, Weights
 
-    backs = Opinion(heard={"other": Heard(value="backing", p=0.9)}, weights={"other": Weights()})
-    monkeypatch.setattr("sgcad_core.reading.second_reader.learned_reader.opinion", lambda narrative: backs)
+    said = Opinion(heard={"other": Heard(value=other, p=0.9)}, weights={"other": Weights()})
+    monkeypatch.setattr("sgcad_core.reading.second_reader.learned_reader.opinion", lambda narrative: said)
+
+
+def by_two_readers(folder, text):
+    """The result of a report that the rules and the learned reader read."""
+    source = folder / "c1.txt"
+    source.write_text(text)
+    config = load(settings.ROOT / "configs" / "template.yaml", ("second_opinion=learned", "tracker=jsonl"))
+    return run_case(config, Case(source, "c1"), folder / "out", "d1").result
+
+
+def test_a_second_opinion_that_leads_to_no_scenario_leaves_the_rules_reading(monkeypatch, tmp_path):
+    second_reader_says(monkeypatch, "backing")
     real = CaseRun._both
     monkeypatch.setattr(CaseRun, "_both", lambda self, report: None if report.value.opinion else real(self, report))
-    source = tmp_path / "c1.txt"
-    source.write_text(
+    result = by_two_readers(
+        tmp_path,
         "The AV was stopped at a red light on Main Street. An SUV behind it, traveling straight, struck the rear "
-        "of the AV with its front bumper."
+        "of the AV with its front bumper.",
     )
-    config = load(settings.ROOT / "configs" / "template.yaml", ("second_opinion=learned", "tracker=jsonl"))
-    result = run_case(config, Case(source, "c1"), tmp_path / "out", "d1").result
     assert result["status"] == "generated"
     assert result["collision"]["realised"]
     assert {a["id"]: a["maneuver"] for a in result["actors"]} == {"V1": "stopped", "V2": "straight"}
@@ -219,17 +230,12 @@ def test_a_second_opinion_that_leads_to_no_scenario_leaves_the_rules_reading(mon
 
 
 def test_the_rules_reading_is_kept_where_the_scenario_of_both_readers_misses_more(monkeypatch, tmp_path):
-    from sgcad_core.records.second_reader import Heard, Opinion, Weights
-
-    turns = Opinion(heard={"other": Heard(value="turn_left", p=0.9)}, weights={"other": Weights()})
-    monkeypatch.setattr("sgcad_core.reading.second_reader.learned_reader.opinion", lambda narrative: turns)
-    source = tmp_path / "c1.txt"
-    source.write_text(
+    second_reader_says(monkeypatch, "turn_left")
+    result = by_two_readers(
+        tmp_path,
         "The AV was traveling north on Main Street. An SUV, traveling south in the opposite direction, struck the "
-        "front of the AV with its front bumper."
+        "front of the AV with its front bumper.",
     )
-    config = load(settings.ROOT / "configs" / "template.yaml", ("second_opinion=learned", "tracker=jsonl"))
-    result = run_case(config, Case(source, "c1"), tmp_path / "out", "d1").result
     assert all(fact["basis"] != "model" for fact in result["facts"])
     assert any("the rules' reading is kept: its scenario misses" in str(note) for note in result["notes"])
 
