@@ -14,8 +14,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
-from typing import Any, cast
+from typing import Any, NoReturn, cast
 
+import prefect.engine
 from prefect.futures import PrefectFuture
 from prefect.task_runners import ProcessPoolTaskRunner, TaskRunner, ThreadPoolTaskRunner
 
@@ -58,7 +59,21 @@ def _threads(width: int) -> Runner:
 
 
 def _processes(width: int) -> Runner:
-    return cast("Runner", ProcessPoolTaskRunner(max_workers=width, initializer=prepare_process))
+    return cast("Runner", ProcessPoolTaskRunner(max_workers=width, initializer=prepare_worker))
+
+
+def prepare_worker() -> None:
+    """Start a worker process of Prefect's pool, in which no fault of Prefect's is an exit.
+
+    Prefect's engine calls `exit` where the server does not answer when a task begins. The pool hands SystemExit on to
+    the parent, where it ends the thread that manages the pool: every future would stay open for good.
+    """
+    prepare_process()
+    vars(prefect.engine)["exit"] = _no_exit
+
+
+def _no_exit(code: int = 0) -> NoReturn:
+    raise RuntimeError(f"Prefect gave a task up (exit code {code}); its server may be gone")
 
 
 def _outcome(future: Any) -> Any:
