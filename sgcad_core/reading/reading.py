@@ -41,6 +41,7 @@ from sgcad_core.reading.inference.gaps import (
 )
 from sgcad_core.reading.inference.infer_facts import infer_crash
 from sgcad_core.reading.inference.inference_state import CrashTold
+from sgcad_core.reading.inference.untold_moves import with_untold_moves
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Segment, Statement, resolve_sentences, segments
 from sgcad_core.reading.motion.motion_reader import read_motions
@@ -202,6 +203,7 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     acts = timeline_of(builder, seen.crash_told, inferred)
     called = {old: new for old, new in named.roster.called.items() if old != new}
     roads = roads_of(named.statements, named.roster, crash_of(seen.crash_told, inferred, seen.sky, acts))
+    roads = with_untold_moves(roads, seen.crash_told, inferred)
     as_read = StageResults(seen.crash_told, inferred, roads.crash, dict(seen.sky.sources))
     lights = [builder.stated(f"vehicles.{v}.signal", told.state, told.source) for v, told in seen.signals.items()]
     course = course_provenance(builder, seen.crash_told)

@@ -7,7 +7,7 @@ suggest. Angles here are clockwise degrees, as compass words turn. Knows no text
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 from sgcad_core.reading.contacts.contact_records import ContactMention, with_areas
 from sgcad_core.reading.contacts.contact_sides import infer_contacts
@@ -29,6 +29,8 @@ from sgcad_core.reading.motion.motion_record import VehicleMotion, WeightedValue
 from sgcad_core.reading.motion.relative_headings import contact_prefers, relative
 from sgcad_core.reading.text.compass import between, turned
 from sgcad_core.records.specs import Area, Compass, Maneuver
+
+Hand = Literal["left", "right"]
 
 
 def infer_crash(crash: CrashTold) -> CrashInferred:
@@ -144,14 +146,27 @@ def _change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[Contact
             or (source and source.rule in SHIFTED)
         ):
             continue
+        told = _told_hand(crash.motions[v], source.words if source else "")
         hit = next((b for b in pairs if v in (b.actor, b.other)), None)
         own, other = hit.areas_of(v) if hit else (None, None)
-        if (
+        towards = (
             "right" in (own or "").split("/")
             or "left" in (other or "").split("/")
             or crash.motions[v].lane_word == "left"
-        ):
+        )
+        if told == "right" or (told is None and towards):
             inferred.maneuvers[v] = "lane_change_right"
+
+
+def _told_hand(motion: VehicleMotion, words: str) -> Hand | None:
+    """The hand of a lane change by its own words, or by the numbers of both lanes; None where neither tells it."""
+    hands = {m[0].lower() for m in rule("deeds.hand").finditer(words)}
+    if len(hands) == 1:
+        return "left" if hands == {"left"} else "right"
+    start, end = motion.lane, motion.to_lane
+    if start is None or not isinstance(end, int) or start == end or (start < 0) != (end < 0):
+        return None
+    return "left" if end > start else "right"
 
 
 def _stated_headings(crash: CrashTold, inferred: CrashInferred) -> None:

@@ -17,7 +17,10 @@ def beside_road(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMe
     for b in () if crash.roster.counted else pairs:
         for met, came in ((b.actor, b.other), (b.other, b.actor)):
             motion = crash.motions[met]
-            silent = not (motion.headings or motion.cues or motion.relations or motion.lane or motion.lane_word)
+            beside = any(other == met for one in crash.motions.values() for _, _, other, _ in one.relations)
+            silent = not (
+                motion.headings or motion.cues or motion.relations or motion.lane or motion.lane_word or beside
+            )
             if silent and inferred.maneuvers[came] in DEPARTURES:
                 inferred.maneuvers[met] = "parked"
                 inferred.sources[f"{met} maneuver"] = Source(b.number, b.words, "infer.beside_road")

@@ -147,10 +147,14 @@ def _own(text: str, before: int) -> str:
 
 def _opening(statement: Statement, starts: list[tuple[int, int, tuple[str, ...]]]) -> list[Segment]:
     """What a participle tells of the subject that follows it: "While turning right, V1 was struck"."""
-    before = statement.text[: starts[0][0]] if starts else ""
-    if not before or not starts[0][2] or MENTION.search(before) or not rule("clauses.opening").fullmatch(before):
+    first = MENTION.search(statement.text)
+    before = statement.text[: first.start()] if first else ""
+    if not first or not rule("clauses.opening").fullmatch(before):
         return []
-    return [Segment(starts[0][2], before.lower().strip(" ,"), statement.role, statement.number, 0)]
+    whole = bool(starts) and starts[0][0] == first.start()
+    owner = (first[0],) if rule("clauses.part_touched").match(statement.text[first.end() :]) else ()
+    subjects = starts[0][2] if whole else owner
+    return [Segment(subjects, before.lower().strip(" ,"), statement.role, statement.number, 0)] if subjects else []
 
 
 def subject_starts(statement: Statement, roster: Roster) -> list[tuple[int, int, tuple[str, ...]]]:
@@ -235,6 +239,8 @@ def _last_two(both: re.Match[str], roster: Roster) -> tuple[str, ...]:
 
 def _is_subject(text: str, match: re.Match[str]) -> bool:
     before = text[max(0, match.start() - 60) : match.start()]
+    if match.group("stranger") and rule("clauses.is_a").search(before):
+        return False
     behind = rule("clauses.aside").sub("", text[match.end() :])
     if rule("clauses.driver_told").search(before) and rule("clauses.tells_of_himself").match(behind):
         return True
@@ -247,7 +253,9 @@ def _is_subject(text: str, match: re.Match[str]) -> bool:
     if rule("clauses.preposition").search(before):
         if rule("clauses.yielded").search(before) and rule("clauses.located_doing").match(behind):
             return True
-        reported = rule("clauses.reports").search(before)
+        if rule("clauses.evaded").search(before):
+            return False  # who evades it goes on: "in an attempt to avoid V2 turned left"
+        reported = rule("clauses.reports").search(before) and not rule("clauses.then").match(behind)
         return bool(rule("clauses.participle").match(behind)) or bool(reported and _VERB.match(behind))
     return _acts(behind)
 

@@ -9,7 +9,7 @@ from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.language import of_role, rule, values
 from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
 from sgcad_core.reading.roads.lanes import MOST_ONE_WAY
-from sgcad_core.reading.text.compass import compass_of, turned
+from sgcad_core.reading.text.compass import between, compass_of, turned
 from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.records.specs import Compass
 
@@ -53,7 +53,10 @@ def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
     for m in _FROM.finditer(text):
         _note_origin(motion, text, m, weight, _FROM.id)
     for m in rule("headings.from_to").finditer(text):
-        _note_origin(motion, text, m, weight, "headings.from_to")
+        if _turns_between(text, m):
+            _note_heading(motion, m["dir"], weight + 1, "headings.from_to")
+        else:
+            _note_origin(motion, text, m, weight, "headings.from_to")
     for m in _EXIT.finditer(text):
         _note_exit(motion, m["dir"], _EXIT.id)
 
@@ -63,6 +66,13 @@ def _note_exit(motion: VehicleMotion, word: str, by: str) -> None:
     if heading and heading not in motion.exits:
         motion.exits.append(heading)
         motion.read(f"exit {heading}", word, by)
+
+
+def _turns_between(text: str, told: re.Match[str]) -> bool:
+    """Whether "from north to west" names two headings: a turn from one to the other is told behind it."""
+    turn = rule("headings.turn_behind").match(text[told.end() :])
+    start, end = compass_of(told["dir"]), compass_of(told["dir2"])
+    return bool(turn and start and end and between(start, end) == {"left": 270, "right": 90}[turn["hand"].lower()])
 
 
 def _note_origin(motion: VehicleMotion, text: str, told: re.Match[str], weight: int, by: str) -> None:

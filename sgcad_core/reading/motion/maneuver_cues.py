@@ -58,6 +58,7 @@ def read_maneuver_cues(motion: VehicleMotion, text: str, weight: int, number: in
             or rule("deeds.evasive").search(text[: m.start()])
             or rule("deeds.steering").search(before)
             or rule("deeds.turned_aside").match(text[m.end() :])
+            or (not motion.ordered and rule("deeds.turned_then").match(text[m.end() :]))
         ):
             continue
         led = before + text[m.start() : m.start(told) if told else m.start()]
@@ -112,12 +113,13 @@ def _read_turn_to(segment: _Segment) -> None:
     motion, text = segment.motion, segment.text
     if any(d.number == segment.number and d.kind.removeprefix("want_") in _TURNS for d in motion.cues):
         return
-    for m in rule("deeds.turn_to").finditer(text):
-        start, end = motion.headings[0].value if motion.headings else None, compass_of(m["onto"])
-        side = _BY_ANGLE.get(between(start, end)) if start and end else None
-        if side and not _NOT.search(text[: m.start()]):
-            want = "want_" if _LATER.search(text[: m.start()]) else ""
-            segment.add(f"{want}turn_{side}", m, "deeds.turn_to")
+    for told in (rule("deeds.turn_to"), rule("deeds.meant_way")):
+        for m in told.finditer(text):
+            start, end = motion.headings[0].value if motion.headings else None, compass_of(m["onto"])
+            side = _BY_ANGLE.get(between(start, end)) if start and end else None
+            if side and not _NOT.search(text[: m.start()]):
+                meant = told.id == "deeds.meant_way" or _LATER.search(text[: m.start()])
+                segment.add(f"{'want_' if meant else ''}turn_{side}", m, told.id)
     for m in rule("deeds.go_turn").finditer(text):
         want = "want_" if m["go"].lower() == "go" else ""
         if not _NOT.search(text[: m.start()]):

@@ -142,6 +142,12 @@ def _within_road(acts: list[ManeuverCue]) -> list[ManeuverCue]:
     return [d for d in acts if d.kind != "crossing_centerline" or d.when not in changes]
 
 
+def _without_returns(acts: list[ManeuverCue]) -> list[ManeuverCue]:
+    """Without departures of one that was back on the road: a later sentence has it leave its lane."""
+    last = max((d.number for d in acts if d.kind in _OUT_OF_LANE), default=-1)
+    return [d for d in acts if d.kind not in DEPARTURES or d.number >= last]
+
+
 def _went_on(turn: ManeuverCue, since: list[ManeuverCue]) -> bool:
     """Whether a turn was over: it is told so, or a later sentence has the vehicle on its way again."""
     if any(d.kind == "turn_done" and d.when >= turn.when for d in since):
@@ -244,8 +250,9 @@ def _moving(motion: VehicleMotion, least: int) -> Decision:
     acts = _within_road(motion.cues)
     if first := _before_the_rest(motion, acts):
         return Decision(first.kind, cue=first)  # type: ignore[arg-type]
+    acts = _without_returns(acts)
     for kind in _PLAIN:
-        if any(d.kind == kind for d in acts) and (cue := motion.cue(kind, 3)):
+        if cue := next((d for d in acts if d.kind == kind and d.weight >= 3), None):
             return Decision(kind, cue=cue)
     for over in ("code:over_left", "code:over_right"):
         if (cue := motion.cue(over)) and not motion.has_cue("code:straight"):

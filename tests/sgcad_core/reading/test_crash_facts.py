@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sgcad_core.reading.crash_facts import CrashFacts
+from sgcad_core.reading.inference.untold_moves import BESIDE, OVER_MIDDLE
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.text.privacy import redact
 
@@ -527,7 +528,11 @@ def _swapped(text: str) -> str:
 
 
 def _two_told(text: str) -> bool:
-    facts = read(text).crash
+    """Whether both directions are told, and no move is given to the first in number."""
+    reading = read(text)
+    facts = reading.crash
+    if any(fact.rule in (OVER_MIDDLE, BESIDE) for fact in reading.facts):
+        return False
     return len(facts.vehicles) == 2 and all(v.heading_stated for v in facts.vehicles) and bool(_NUMBERED.search(text))
 
 

@@ -55,7 +55,8 @@ def told(text: str, said: Answered, weights: dict[str, Weights] = BELIEVED) -> R
 
 def test_where_both_agree_nothing_changes() -> None:
     reading = read(TEXT)
-    assert fused_with_answer(reading, Opinion(answered=answered(), weights=BELIEVED)) is reading
+    said = answered(maneuver="crossing_centerline")
+    assert fused_with_answer(reading, Opinion(answered=said, weights=BELIEVED)) is reading
 
 
 def test_a_believed_value_is_taken_and_is_a_fact_of_the_model() -> None:
@@ -322,7 +323,7 @@ def test_another_first_contact_comes_first() -> None:
 
 
 def test_a_contact_of_strangers_is_not_taken() -> None:
-    behavior = answered().behavior.model_copy(
+    behavior = answered(maneuver="crossing_centerline").behavior.model_copy(
         update={"contacts": (Contact(striker="V8", struck="V9", striker_area="front", struck_area="left"),)}
     )
     reading = read(TEXT)
