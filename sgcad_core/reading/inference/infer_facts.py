@@ -7,18 +7,16 @@ suggest. Angles here are clockwise degrees, as compass words turn. Knows no text
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any
 
 from sgcad_core.reading.contacts.contact_records import ContactMention, with_areas
 from sgcad_core.reading.contacts.contact_sides import infer_contacts
 from sgcad_core.reading.inference.inference_state import QUARTER_DEG, CrashInferred, CrashTold, end_of
+from sgcad_core.reading.inference.lane_moves import change_hands, over_centerline, passing_by
 from sgcad_core.reading.inference.silent_vehicles import beside_road, from_entered_lanes, from_turn_lane
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.heading_lane_cues import TURNS_TO
 from sgcad_core.reading.motion.maneuvers import (
-    INTO_LANE_OF,
-    OUT_OF_LANE_LEFT,
-    SHIFTED,
     Decision,
     changed_lanes_after_turn,
     decide,
@@ -29,8 +27,6 @@ from sgcad_core.reading.motion.motion_record import VehicleMotion, WeightedValue
 from sgcad_core.reading.motion.relative_headings import contact_prefers, relative
 from sgcad_core.reading.text.compass import between, turned
 from sgcad_core.records.specs import Area, Compass, Maneuver
-
-Hand = Literal["left", "right"]
 
 
 def infer_crash(crash: CrashTold) -> CrashInferred:
@@ -49,10 +45,11 @@ def infer_crash(crash: CrashTold) -> CrashInferred:
     _set_going(crash, inferred, pairs)
     beside_road(crash, inferred, pairs)
     from_turn_lane(crash, inferred, pairs)
-    _change_hands(crash, inferred, pairs)
+    change_hands(crash, inferred, pairs)
     _mend_headings(crash, inferred, pairs)
     _complete_headings(crash, inferred, pairs)
-    _over_centerline(crash, inferred, pairs)
+    over_centerline(crash, inferred, pairs)
+    passing_by(crash, inferred)
     inferred.exits = {v: e for v in crash.roster.ids if (e := _exit(crash.motions[v], inferred, v)) is not None}
     inferred.contacts = infer_contacts(crash, inferred, pairs)
     return inferred
@@ -122,51 +119,6 @@ def _faced_headings(crash: CrashTold, inferred: CrashInferred) -> None:
             _, way, source = max(faced, key=lambda told: told[0])
             inferred.headings[v], inferred.sources[f"{v} heading"] = way, source  # type: ignore[assignment]
             inferred.stated.add(v)
-
-
-def _over_centerline(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
-    """Out of the own lane to the left, or into that of one that comes the other way: over the middle of the road."""
-    for v in crash.roster.ids:
-        source = inferred.sources.get(f"{v} maneuver")
-        hit = next((b for b in pairs if v in (b.actor, b.other)), None)
-        if hit is None or source is None or source.rule not in (OUT_OF_LANE_LEFT, INTO_LANE_OF):
-            continue
-        other = hit.other if hit.actor == v else hit.actor
-        if between(inferred.headings[v], inferred.headings[other]) in (135, 180, 225):
-            inferred.maneuvers[v] = "crossing_centerline"
-
-
-def _change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
-    """Directs a lane change without a told side: towards the flank of the contact, away from a told lane."""
-    for v in crash.roster.ids:
-        source = inferred.sources.get(f"{v} maneuver")
-        if (
-            inferred.maneuvers[v] != "lane_change_left"
-            or v in inferred.told_maneuvers
-            or (source and source.rule in SHIFTED)
-        ):
-            continue
-        told = _told_hand(crash.motions[v], source.words if source else "")
-        hit = next((b for b in pairs if v in (b.actor, b.other)), None)
-        own, other = hit.areas_of(v) if hit else (None, None)
-        towards = (
-            "right" in (own or "").split("/")
-            or "left" in (other or "").split("/")
-            or crash.motions[v].lane_word == "left"
-        )
-        if told == "right" or (told is None and towards):
-            inferred.maneuvers[v] = "lane_change_right"
-
-
-def _told_hand(motion: VehicleMotion, words: str) -> Hand | None:
-    """The hand of a lane change by its own words, or by the numbers of both lanes; None where neither tells it."""
-    hands = {m[0].lower() for m in rule("deeds.hand").finditer(words)}
-    if len(hands) == 1:
-        return "left" if hands == {"left"} else "right"
-    start, end = motion.lane, motion.to_lane
-    if start is None or not isinstance(end, int) or start == end or (start < 0) != (end < 0):
-        return None
-    return "left" if end > start else "right"
 
 
 def _stated_headings(crash: CrashTold, inferred: CrashInferred) -> None:

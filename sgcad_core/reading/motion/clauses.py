@@ -122,13 +122,12 @@ def segments(statements: Iterable[Statement], roster: Roster) -> tuple[Segment, 
 def _cut(statement: Statement, roster: Roster) -> list[Segment]:
     starts = subject_starts(statement, roster)
     ends = [at for at, _, _ in starts[1:]] + [len(statement.text)][: len(starts)]
-    found = [
-        Segment(
-            subjects, _own(statement.text[begin:end].lower().strip(" ,"), n), statement.role, statement.number, begin
-        )
-        for n, ((_, begin, subjects), end) in enumerate(zip(starts, ends, strict=True))
-        if subjects
-    ]
+    found = []
+    for n, ((place, begin, subjects), end) in enumerate(zip(starts, ends, strict=True)):
+        text = _own(statement.text[begin:end].lower().strip(" ,"), n)
+        told = rule("clauses.before_it").search(statement.text[:place])  # "before V1 started": it had not
+        if subjects:
+            found.append(Segment(subjects, f"before {text}" if told else text, statement.role, statement.number, begin))
     return [*_opening(statement, starts), *found, *(also for one in found for also in _alike(one, roster))]
 
 

@@ -64,6 +64,7 @@ def read_maneuver_cues(motion: VehicleMotion, text: str, weight: int, number: in
         led = before + text[m.start() : m.start(told) if told else m.start()]
         begun = rule("deeds.try").search(before[-14:]) or rule("deeds.begins").search(led)
         later = rule("deeds.not_yet_begun").search(before) or (_LATER.search(before) and not begun)
+        later = later or (motion.ordered and rule("deeds.stands_turning").search(before))
         segment.add(("want_" if later else "") + f"turn_{side}", m, _TURNING.id)
     _read_turn_to(segment)
     told_now = of_role("deed_now") if motion.ordered else ()
@@ -80,7 +81,9 @@ def read_maneuver_cues(motion: VehicleMotion, text: str, weight: int, number: in
 
 def _undone(kind: str, before: str, words: str) -> bool:
     """Whether the words before a cue make it a hope, a plan, an earlier act, or an act of people on foot."""
-    if kind in _HOPED and (_LATER.search(before) or rule("deeds.meant").search(before)):
+    if kind in _HOPED and any(
+        hoped.search(before) for hoped in (_LATER, rule("deeds.meant"), rule("deeds.stands_turning"))
+    ):
         return not (rule("deeds.done").match(words) or rule("deeds.begins").search(before))
     if kind in _BEFORE and rule("deeds.earlier").search(before):
         return True

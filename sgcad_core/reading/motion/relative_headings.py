@@ -16,6 +16,8 @@ from sgcad_core.reading.inference.inference_state import (
     end_of,
     is_sideswipe,
 )
+from sgcad_core.reading.language import rule
+from sgcad_core.reading.motion.maneuvers import INTO_LANE_OF
 from sgcad_core.reading.motion.motion_record import DRIVES
 from sgcad_core.records.specs import Area
 
@@ -74,6 +76,9 @@ def _add_maneuvers(score: dict[int, float], crash: CrashTold, inferred: CrashInf
             score[180] += 1.5
         if motion.origin == RAMP or maneuver in ("lane_change_left", "lane_change_right", "merge"):
             score[0] += 2.0 if motion.origin == RAMP else 1.6  # a ramp runs beside the road before it joins
+        source = inferred.sources.get(f"{me} maneuver")
+        if source and source.rule == INTO_LANE_OF and rule("deeds.change_word").search(source.words):
+            score[0] += 1.0  # lanes are changed among those of one direction
         if motion.origin in DRIVES:
             score[90] += 1.0
             score[270] += 1.0

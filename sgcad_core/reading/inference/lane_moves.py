@@ -1,0 +1,76 @@
+"""Moves out of the own lane, settled by the other vehicle: over the middle of the road, to which hand, past whom.
+
+Knows what was read and is settled so far; no text but the words of a cue.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from sgcad_core.reading.contacts.contact_records import ContactMention
+from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
+from sgcad_core.reading.language import rule
+from sgcad_core.reading.motion.maneuvers import INTO_LANE_OF, OUT_OF_LANE_LEFT, SHIFTED
+from sgcad_core.reading.motion.motion_record import VehicleMotion
+from sgcad_core.reading.text.compass import between
+
+Hand = Literal["left", "right"]
+
+
+def over_centerline(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
+    """Out of the own lane to the left, or into that of one that comes the other way: over the middle of the road."""
+    for v in crash.roster.ids:
+        source = inferred.sources.get(f"{v} maneuver")
+        hit = next((b for b in pairs if v in (b.actor, b.other)), None)
+        if hit is None or source is None or source.rule not in (OUT_OF_LANE_LEFT, INTO_LANE_OF):
+            continue
+        other = hit.other if hit.actor == v else hit.actor
+        if between(inferred.headings[v], inferred.headings[other]) in (135, 180, 225):
+            inferred.maneuvers[v] = "crossing_centerline"
+
+
+def change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
+    """Directs a lane change without a told side: towards the flank of the contact, away from a told lane."""
+    for v in crash.roster.ids:
+        source = inferred.sources.get(f"{v} maneuver")
+        if (
+            inferred.maneuvers[v] != "lane_change_left"
+            or v in inferred.told_maneuvers
+            or (source and source.rule in SHIFTED)
+        ):
+            continue
+        told = _told_hand(crash.motions[v], source.words if source else "")
+        hit = next((b for b in pairs if v in (b.actor, b.other)), None)
+        own, other = hit.areas_of(v) if hit else (None, None)
+        towards = (
+            "right" in (own or "").split("/")
+            or "left" in (other or "").split("/")
+            or crash.motions[v].lane_word == "left"
+        )
+        if told == "right" or (told is None and towards):
+            inferred.maneuvers[v] = "lane_change_right"
+
+
+def passing_by(crash: CrashTold, inferred: CrashInferred) -> None:
+    """Straight on for one of two that passes the other one where that comes against it: it overtakes nobody."""
+    if len(crash.roster.ids) != 2:
+        return
+    for v, other in (crash.roster.ids, crash.roster.ids[::-1]):
+        source = inferred.sources.get(f"{v} maneuver")
+        passes = inferred.maneuvers[v] == "overtaking" and source and rule("deeds.passes").search(source.words)
+        opposite = any(relation == "opposite" for _, relation, _, _ in crash.motions[v].relations)
+        told = opposite or {v, other} <= inferred.stated
+        if passes and told and between(inferred.headings[v], inferred.headings[other]) in (135, 180, 225):
+            inferred.maneuvers[v] = "straight"
+            inferred.told_maneuvers.discard(v)
+
+
+def _told_hand(motion: VehicleMotion, words: str) -> Hand | None:
+    """The hand of a lane change by its own words, or by the numbers of both lanes; None where neither tells it."""
+    hands = {m[0].lower() for m in rule("deeds.hand").finditer(words)}
+    if len(hands) == 1:
+        return "left" if hands == {"left"} else "right"
+    start, end = motion.lane, motion.to_lane
+    if start is None or not isinstance(end, int) or start == end or (start < 0) != (end < 0):
+        return None
+    return "left" if end > start else "right"
