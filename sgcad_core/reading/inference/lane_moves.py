@@ -10,7 +10,7 @@ from typing import Literal
 from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.motion.maneuvers import INTO_LANE_OF, OUT_OF_LANE_LEFT, SHIFTED
+from sgcad_core.reading.motion.maneuvers import INTO_LANE_OF, INTO_LANE_OF_OTHER, OUT_OF_LANE_LEFT, SHIFTED
 from sgcad_core.reading.motion.motion_record import VehicleMotion
 from sgcad_core.reading.text.compass import between
 
@@ -22,7 +22,7 @@ def over_centerline(crash: CrashTold, inferred: CrashInferred, pairs: list[Conta
     for v in crash.roster.ids:
         source = inferred.sources.get(f"{v} maneuver")
         hit = next((b for b in pairs if v in (b.actor, b.other)), None)
-        if hit is None or source is None or source.rule not in (OUT_OF_LANE_LEFT, INTO_LANE_OF):
+        if hit is None or source is None or source.rule not in (OUT_OF_LANE_LEFT, INTO_LANE_OF, INTO_LANE_OF_OTHER):
             continue
         other = hit.other if hit.actor == v else hit.actor
         if between(inferred.headings[v], inferred.headings[other]) in (135, 180, 225):

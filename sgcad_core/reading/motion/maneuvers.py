@@ -59,7 +59,7 @@ _OUT_OF_LANE: dict[str, Maneuver] = {
     "departed_lane_right": "lane_change_right",
 }
 """Out of the own lane: a change of lane, unless what is met there comes the other way."""
-INTO_LANE_OF = "near_deeds.into_lane_of"
+INTO_LANE_OF, INTO_LANE_OF_OTHER = "near_deeds.into_lane_of", "deeds.into_lane_of_other"
 OUT_OF_LANE_LEFT = "deeds.departed_lane_left"
 SHIFTED = tuple(f"deeds.{kind}" for kind in _SHIFTS)
 """Rules of such moves: the hand is told, that it is a change of lane is not."""
@@ -144,8 +144,8 @@ def _within_road(acts: list[ManeuverCue]) -> list[ManeuverCue]:
 
 def _without_returns(acts: list[ManeuverCue]) -> list[ManeuverCue]:
     """Without departures of one that was back on the road: a later sentence has it leave its lane."""
-    last = max((d.number for d in acts if d.kind in _OUT_OF_LANE), default=-1)
-    return [d for d in acts if d.kind not in DEPARTURES or d.number >= last]
+    last = max(((d.number, d.at) for d in acts if d.kind in _OUT_OF_LANE), default=(-1, 0))
+    return [d for d in acts if d.kind not in DEPARTURES or (d.number, d.at) >= last]
 
 
 def _went_on(turn: ManeuverCue, since: list[ManeuverCue]) -> bool:

@@ -19,7 +19,7 @@ def _maneuvers(text: str) -> dict[str, tuple[str, bool]]:
     ("contact", "mover"),
     [
         ("The front of V1 contacted the front of V2.", "V1"),
-        ("The front of V2 contacted the left side of V1.", "V1"),
+        ("The front of V2 contacted the left side of V1.", "V2"),
         ("The left side of V1 contacted the left side of V2.", "V1"),
         ("V2 lost control on ice. The front of V1 contacted the left side of V2.", "V2"),
     ],
@@ -63,7 +63,7 @@ def test_a_told_crossing_stays_with_the_one_of_whom_it_is_told() -> None:
         ),
     ],
 )
-def test_of_two_side_by_side_the_first_changes_lanes(text: str, maneuver: str) -> None:
+def test_of_two_side_by_side_the_striker_changes_lanes(text: str, maneuver: str) -> None:
     assert _maneuvers(text) == {"V1": (maneuver, False), "V2": ("straight", False)}
     assert any(f.rule == BESIDE and f.value == maneuver for f in read(text).facts)
 
