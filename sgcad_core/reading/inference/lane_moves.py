@@ -1,4 +1,4 @@
-"""Moves out of the own lane, settled by the other vehicle: over the middle of the road, to which hand, past whom.
+"""Moves out of the own lane, settled by the other vehicle: over the middle of the road, to which hand, past oncoming.
 
 Knows what was read and is settled so far; no text but the words of a cue.
 """
@@ -52,7 +52,7 @@ def change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactM
 
 
 def passing_by(crash: CrashTold, inferred: CrashInferred) -> None:
-    """Straight on for one of two that passes the other one where that comes against it: it overtakes nobody."""
+    """Straight on for one of two that passes the other one where that comes against it: no overtaking."""
     if len(crash.roster.ids) != 2:
         return
     for v, other in (crash.roster.ids, crash.roster.ids[::-1]):

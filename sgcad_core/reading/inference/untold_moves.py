@@ -57,8 +57,6 @@ def with_untold_moves(roads: RoadFacts, told: CrashTold, inferred: CrashInferred
 
 def _ways_told(told: CrashTold, one: VehicleFacts, other: VehicleFacts) -> bool:
     """Whether the text tells the way of both, or of one against the other."""
-    if one.heading is None or other.heading is None:
-        return False
     relations = ((v.id, met) for v in (one, other) for _, _, met, _ in told.motions[v.id].relations)
     return (one.heading_stated and other.heading_stated) or any({v, met} == {one.id, other.id} for v, met in relations)
 
@@ -77,6 +75,8 @@ def _move(
     own, theirs = first.striker_area, first.struck_area
     if first.striker != mover.id:
         own, theirs = theirs, own
+    if mover.heading is None or other.heading is None:
+        return None, ""
     angle = between(mover.heading, other.heading)
     kind = roads.junction.kind
     course = roads.crash.driven.get(mover.id, CourseTold())
