@@ -117,7 +117,8 @@ def prefect_server() -> Iterator[Server | None]:
     """Name a fresh server to Prefect while the block lasts; None if the user has named one that answers.
 
     Enter it before prefect is imported. Call `wait` on the server before the first flow. Raises MissingTool
-    if the user's server does not answer or Prefect's folder cannot be written, ServerLost where the block fails because that server has ended.
+    if the user's server does not answer or Prefect's folder cannot be written, ServerLost where the block fails because
+    that server has ended.
     """
     if url := settings.prefect_url():
         if not answers(url):
