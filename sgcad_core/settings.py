@@ -77,8 +77,8 @@ def writable_prefect_home() -> Path:
     named = environment("PREFECT_HOME")
     if not named and not home.parent.is_dir():
         raise MissingTool(
-            f"your home folder {home.parent} does not exist, and Prefect keeps its database in it: set the variable HOME "
-            "to a folder that is there, or PREFECT_HOME to one that may be made"
+            f"your home folder {home.parent} does not exist, and Prefect keeps its database in it: set the variable "
+            "HOME to a folder that is there, or PREFECT_HOME to one that may be made"
         )
     try:
         home.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -86,8 +86,8 @@ def writable_prefect_home() -> Path:
             pass
     except OSError as fault:
         raise MissingTool(
-            f"{home}, where Prefect keeps its database ({'PREFECT_HOME' if named else 'below HOME'}), cannot be written "
-            f"({fault.strerror or fault}): set the variable PREFECT_HOME to a folder that can"
+            f"{home}, where Prefect keeps its database ({'PREFECT_HOME' if named else 'below HOME'}), cannot be "
+            f"written ({fault.strerror or fault}): set the variable PREFECT_HOME to a folder that can"
         ) from fault
     return home
 

@@ -39,10 +39,8 @@ def test_a_server_that_ends_by_itself_is_not_called_killed(monkeypatch, tmp_path
 @pytest.mark.slow
 def test_a_server_ends_with_its_parent(monkeypatch, tmp_path):
     monkeypatch.setenv("PREFECT_HOME", str(tmp_path))
-    started = (
-        "import sys; from flows.server import Server; s = Server(); s.wait(); print(s.process.pid); sys.stdout.flush()"
-    )
-    ended = subprocess.run([sys.executable, "-c", started + "; import os; os._exit(0)"], capture_output=True, text=True)
+    parent = "import os; from flows.server import Server; s = Server(); s.wait(); print(s.process.pid, flush=True); "
+    ended = subprocess.run([sys.executable, "-c", parent + "os._exit(0)"], capture_output=True, text=True)
     assert ended.returncode == 0, ended.stderr
     with suppress(psutil.NoSuchProcess):
         psutil.Process(int(ended.stdout)).wait(20)

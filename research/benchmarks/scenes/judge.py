@@ -3,9 +3,10 @@
     python -m research.benchmarks.scenes.judge [RUNS] [--random N] [--judge esmini] [--path BINARY] [--most N]
 
 Takes every scenario.xosc with its road.xodr and trajectories.csv (our playing of it) that lies under RUNS, the vehicles
-of its traffic among them, and that of `sgcad export --traffic`; nothing that a run says of a judge is believed. With --random also crashes of two vehicles on
-so many seeded random maps: those that can be planned are played by both players, and where ours sees the declared
-contact the judge has to. Prints one line of figures each and the cases that disagree.
+of its traffic among them, and those of `sgcad export --traffic`; nothing that a run says of a judge is believed. With
+--random also crashes of two vehicles on so many seeded random maps: those that can be planned are played by both
+players, and where ours sees the declared contact the judge has to. Prints one line of figures each and the
+cases that disagree.
 """
 
 from __future__ import annotations
