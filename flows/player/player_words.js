@@ -162,7 +162,7 @@
   if (!driven) row($("collision"), ["realised", make("td", realised ? "yes" : "no", { className: realised ? (surely ? "yes" : "") : "no" })]);
   const net = data.network || {};
   for (const [k, v] of Object.entries(net)) if (k !== "segments") row($("network"), [words(k), v]);
-  if (data.place) row($("network"), ["real place", data.place]);
+  if (data.place) row($("network"), ["real place", data.place.replace(/^the real place is /, "")]);
   if (net.segments) row($("network"), ["roads (lanes →/←)", net.segments.map((s) => `${s.id} ${s.lanes_forward}/${s.lanes_backward}`).join(", ")]);
   const paper = data.metrics.paper || {}, exact = data.metrics.exact || {};
   const readings = driven ? [["", exact]] : [["paper's formula", paper], ["exact", exact]];
