@@ -18,10 +18,10 @@ const lum = c => { const [r, g, b] = c.map(v => linear(v / 255));
 const parts = c => (c.match(/[\\d.]+/g) || []).map(Number);
 const ground = e => { for (; e; e = e.parentElement) { const c = parts(getComputedStyle(e).backgroundColor);
   if (c.length === 3 || c[3] > .99) return c.slice(0, 3); } return [255, 255, 255]; };
-const poor = [];
+const poor = [], WRITTEN = 'input:not([type=file], [type=range], [type=checkbox]), select';
 for (const e of document.querySelectorAll('body *')) {
   if (e.closest('svg, iframe, [hidden]') || !e.getClientRects().length) continue;
-  if (![...e.childNodes].some(n => n.nodeType === 3 && n.textContent.trim()) && !e.matches('input:not([type=file], [type=range], [type=checkbox]), select')) continue;
+  if (![...e.childNodes].some(n => n.nodeType === 3 && n.textContent.trim()) && !e.matches(WRITTEN)) continue;
   const s = getComputedStyle(e), size = parseFloat(s.fontSize);
   const large = size >= 24 || (size >= 18.7 && Number(s.fontWeight) >= 700);
   const [a, b] = [lum(parts(s.color)), lum(ground(e))].sort((x, y) => y - x), ratio = (a + .05) / (b + .05);
