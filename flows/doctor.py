@@ -8,7 +8,6 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -161,16 +160,7 @@ def _writable(out: Path) -> str:
 
 def _home(out: Path) -> str:
     """Check Prefect's folder first: Prefect itself would try to create it for half a minute."""
-    home = settings.prefect_home()
-    try:
-        home.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(prefix=".sgcad-", dir=home):
-            pass
-    except OSError as fault:
-        raise CheckFailed(
-            f"{home} cannot be written ({fault.strerror}): set PREFECT_HOME to a folder that can"
-        ) from fault
-    return f"{home} can be written"
+    return f"{settings.writable_prefect_home()} can be written"
 
 
 def _services(out: Path) -> str:

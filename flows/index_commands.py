@@ -5,7 +5,7 @@ Progress goes to stderr, answers to stdout.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
@@ -73,14 +73,23 @@ def search(
     base_url: BaseUrl = "",
 ) -> None:
     """Show the passages nearest to a text, best first."""
-    known, _, model = retriever_of(out).stats().embedder.partition("/")
+    manifest = retriever_of(out).stats()
+    known, _, model = manifest.embedder.partition("/")
     named = {"embedder": embedder or known or "none", "model": "" if known == "minilm" else model}
     retriever = retriever_of(out, base_url=base_url, **named)
     hits = retriever.search_checked(text, count, kind or [], task)
     for number, hit in enumerate(hits, 1):
         typer.echo(escape_plain(f"{number}. [{hit.kind}] {hit.id}  {hit.score:.4f}\n{hit.text}\n"))
     if not hits:
-        typer.echo("nothing found")
+        typer.echo(f"nothing found{_why_nothing(kind or (), manifest.kinds)}")
+
+
+def _why_nothing(wanted: Sequence[str], there: Mapping[str, int]) -> str:
+    """What to do where the index has nothing of the kinds that were asked for; "" where it has."""
+    if not wanted or any(there.get(kind) for kind in wanted):
+        return ""
+    remedy = "; add an OpenStreetMap extract: sgcad index add FILE" if "junction" in wanted else ""
+    return f": the index has no {' or '.join(wanted)}, only {', '.join(there)}{remedy}"
 
 
 @index_app.command()

@@ -62,7 +62,7 @@ def new(kind: str, name: str, into: Path) -> list[Path]:
         raise ConfigError(f"name {name!r}: use lower-case letters, digits and _, a letter first, such as my_{kind}")
     if name in catalogue(kind):
         raise ConfigError(f"{kind} {name!r} is installed already ({catalogue(kind)[name].value}): choose another name")
-    folder = into / f"sgcad-{name.replace('_', '-')}"
+    folder = into / f"sgcad-{_dist(name)}"
     if folder.exists():
         raise ConfigError(f"{folder} exists already: nothing was written; choose another name or --into")
     files = _files(kind, name)
@@ -106,7 +106,7 @@ $name = "$module:$Class"
 [tool.setuptools]
 package-dir = {"" = "src"}
 py-modules = ["$module"]
-""").substitute(given, dist=given["name"].replace("_", "-"), own=version("sg-cadvlm"))
+""").substitute(given, dist=_dist(given["name"]), own=version("sg-cadvlm"))
 
 
 def _test(kind: str, given: dict[str, str], test: str) -> str:
@@ -133,9 +133,14 @@ def _example(kind: str, lines: dict[str, object] | None) -> str:
     return yaml.safe_dump({config_extends.KEY: BASES.get(kind, BASE), **(lines or {})}, sort_keys=False)
 
 
+def _dist(name: str) -> str:
+    """A plugin's name as indexes write it in that of its package."""
+    return name.replace("_", "-")
+
+
 def _readme(given: dict[str, str]) -> str:
     return string.Template("""\
-# sgcad-$name
+# sgcad-$dist
 
 A $kind for SG-CADVLM: `src/$module.py`.
 
@@ -143,4 +148,6 @@ A $kind for SG-CADVLM: `src/$module.py`.
     python -m pytest tests
     sgcad check $name.yaml
     sgcad run report.txt --config $name.yaml
-""").substitute(given) + (f"    sgcad drive runs --driver {given['name']}\n" if given["kind"] == "driver" else "")
+""").substitute(given, dist=_dist(given["name"])) + (
+        f"    sgcad drive runs --driver {given['name']}\n" if given["kind"] == "driver" else ""
+    )

@@ -117,7 +117,8 @@ def prefect_server() -> Iterator[Server | None]:
     """Name a fresh server to Prefect while the block lasts; None if the user has named one that answers.
 
     Enter it before prefect is imported. Call `wait` on the server before the first flow. Raises MissingTool
-    if the user's server does not answer, ServerLost where the block fails because that server has ended.
+    if the user's server does not answer or Prefect's folder cannot be written, ServerLost where the block fails because
+    that server has ended.
     """
     if url := settings.prefect_url():
         if not answers(url):
@@ -127,6 +128,7 @@ def prefect_server() -> Iterator[Server | None]:
             )
         yield None
         return
+    settings.writable_prefect_home()
     server = Server()
     settings.use_prefect_url(server.address)
     try:
@@ -154,7 +156,8 @@ def _serve(descriptor: int) -> None:
 
 
 def _end_with_parent() -> None:
-    sys.stdin.buffer.read()
+    while os.read(0, 4096):  # no buffered read: the lock that it holds would abort a server that ends by itself
+        pass
     os._exit(0)
 
 

@@ -40,7 +40,7 @@ class CaseRecord:
     """Everything known of one case when it ends, however it ends.
 
     `failure` is the reason of a case that neither generated nor was declined. `seconds` maps steps (read,
-    retrieve, road, scenario, simulate, measure, draw) to wall time.
+    retrieve, road, scenario, simulate, measure, draw, files) to wall time.
     """
 
     case: str

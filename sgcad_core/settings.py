@@ -8,6 +8,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import shutil
+import tempfile
 import tomllib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -55,12 +56,40 @@ def environment(name: str) -> str:
 
 def cache_home() -> Path:
     """Where what can be made again is kept, such as weights unpacked from a package."""
-    return Path(environment("XDG_CACHE_HOME") or Path.home() / ".cache") / "sg-cadvlm"
+    return Path(environment("XDG_CACHE_HOME") or _home() / ".cache") / "sg-cadvlm"
 
 
 def prefect_home() -> Path:
     """The folder of Prefect's database and profiles."""
-    return Path(environment("PREFECT_HOME") or Path.home() / ".prefect")
+    return Path(environment("PREFECT_HOME") or _home() / ".prefect")
+
+
+def _home() -> Path:
+    try:
+        return Path.home()
+    except RuntimeError as fault:
+        raise MissingTool("no home folder is known for this user: set the variable HOME to one") from fault
+
+
+def writable_prefect_home() -> Path:
+    """Prefect's folder, made if it is not there. Raises MissingTool where it cannot be made or written."""
+    home = prefect_home()
+    named = environment("PREFECT_HOME")
+    if not named and not home.parent.is_dir():
+        raise MissingTool(
+            f"your home folder {home.parent} does not exist, and Prefect keeps its database in it: set the variable "
+            "HOME to a folder that is there, or PREFECT_HOME to one that may be made"
+        )
+    try:
+        home.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(prefix=".sgcad-", dir=home):
+            pass
+    except OSError as fault:
+        raise MissingTool(
+            f"{home}, where Prefect keeps its database ({'PREFECT_HOME' if named else 'below HOME'}), cannot be "
+            f"written ({fault.strerror or fault}): set the variable PREFECT_HOME to a folder that can"
+        ) from fault
+    return home
 
 
 def prefect_url() -> str:

@@ -180,7 +180,8 @@ def test_ci_runs_the_tests_that_make_test_leaves_out():
 
 
 def test_import_costs_nothing_heavy():
-    heavy = ("torch", "prefect", "mlflow", "lancedb")
-    code = f"import sys, sgcad_core.config, flows.cli; print([m for m in {heavy} if m in sys.modules])"
+    heavy = ("torch", "prefect", "mlflow", "lancedb", "pypdf")
+    modules = "sgcad_core.config, flows.cli, plugins.report_reader.auto"
+    code = f"import sys, {modules}; print([m for m in {heavy} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -18,6 +18,7 @@ from sgcad_core.case.records import Conflict, CrashReport, Fact
 from sgcad_core.errors import BadInput
 from sgcad_core.records.timeline import Act
 from sgcad_core.registry import plugin_class
+from sgcad_core.result import counts_of
 
 _SHOWN = 20
 """Most conflicts of an attempt that are listed."""
@@ -42,7 +43,10 @@ def _of_run(folder: Path) -> str:
         raise BadInput(
             f"{folder}: result.json tells no facts ({type(fault).__name__}): run the case again with this version"
         ) from fault
-    told = account(f"{result['case']} ({result['config']})", places, facts, acts)
+    title = f"{result['case']} ({result['config']})"
+    if verdict := (counts_of(result) or {}).get("sentence"):
+        title += f"\n{verdict}"
+    told = account(title, places, facts, acts)
     return "\n".join([told, *_disputed(result.get("disagreements") or ()), *_conflicts(folder)])
 
 

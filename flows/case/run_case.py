@@ -173,7 +173,7 @@ def _hand_to_a_stack(
     """Name source, date and assumptions in scenario.xosc, and write ego.xosc of an executed case."""
     if record.scenario is None or record.scenario.xosc is None:
         return
-    with run.clock("draw"):
+    with run.clock("files"):
         source = ego_files.source_of(result)
         xosc = made.xosc if made and made.xosc else record.scenario.xosc
         (folder / "scenario.xosc").write_text(stamped(xosc, source), encoding="utf-8")

@@ -52,8 +52,9 @@ def drive(
     from rich.console import Console
 
     from flows.drive import table
-    from flows.drive.run_drive import Order, drive_folders
+    from flows.drive.run_drive import Order, drive_folders, first_page
     from flows.drive.script_of_case import case_folders
+    from flows.terminal import escape_plain
     from sgcad_core.config import driver_entry
 
     order = Order(
@@ -61,13 +62,16 @@ def drive(
         ego=ego, roles=_roles(role), release_s=release, factor=factor, role_of=_given(role_of or []),
         fresh=fresh, pages=pages,
     )  # fmt: skip
-    told, tally = drive_folders(case_folders(cases), order, jobs), table.Tally()
+    folders = case_folders(cases)
+    told, tally = drive_folders(folders, order, jobs), table.Tally()
     with _opened(csv) as out:
         for one in table.as_csv(out, told) if out else told:
             tally.add(one)
     table.show(Console(emoji=False, highlight=False), tally)
     if csv:
         typer.echo(f"written: {csv}")
+    if page := first_page(folders, order):
+        typer.echo(escape_plain(f"look at: {page}"))
     raise typer.Exit(int(tally.failed > 0))
 
 
@@ -131,8 +135,10 @@ def vary(
 ) -> None:
     """Vary what a report leaves open: a family of the same crash as scenario files, in vary/ of each case's folder."""
     from flows.drive.families import family_of, write_family
+    from flows.drive.family_words import family_lines
     from flows.drive.hardest_search import METHODS, Search, hardest
     from flows.drive.script_of_case import case_folders
+    from flows.terminal import escape_plain
     from sgcad_core.config import driver_entry
 
     entry = driver_entry(_yaml(driver)) if driver else None
@@ -146,6 +152,6 @@ def vary(
     for folder in case_folders(cases):
         family = family_of(folder, _given(role_of or []))
         place = write_family(family, count, seed, partial(hardest, family, count, seed, look) if look else None)
-        typer.echo(str(place))
+        typer.echo("\n".join(map(escape_plain, family_lines(place))))
         if count_left := len(family.basis.script.background):
             typer.echo(f"the {count_left} vehicles of its traffic are left out: a family varies the crash alone")

@@ -130,6 +130,12 @@ def _write_drive(driven: Drive, told: Mapping[str, Any], target: Path, order: Or
         partial.rename(target)
 
 
+def first_page(folders: Sequence[Path], order: Order) -> Path | None:
+    """drive.html of the first case that has one, of the first driver that drove it."""
+    places = (folder / FOLDER / entry.label for folder in folders for entry in order.drivers)
+    return next((page for place in places for page in sorted(place.glob("*/drive.html"))), None)
+
+
 def drive_folders(folders: Sequence[Path], order: Order, jobs: int) -> Iterator[dict[str, Any]]:
     """Drive many cases, some at a time; results as they come, in the order of the folders, failures among them.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flows.player.player_data import TRAFFIC_COLOR, Mover, View
+from flows.player.player_data import TRAFFIC_COLOR, Mover, View, label_color
 from flows.player.road_shapes import Drawing
 from sgcad_core.geometry.plane import Box, corners
 from sgcad_core.roads.closures import CONE_M
@@ -108,7 +108,9 @@ def draw_path(axes: Axes, mover: Mover) -> None:
     )
     label = axes.annotate(mover.info.id, (track.x_m[0], track.y_m[0]), xytext=(7, 7), textcoords="offset points")
     label.set(color="white", fontsize=8, fontweight="bold", zorder=6)
-    label.set_bbox({"boxstyle": "round,pad=0.25", "facecolor": color, "edgecolor": "white", "linewidth": 0.8})
+    label.set_bbox(
+        {"boxstyle": "round,pad=0.25", "facecolor": label_color(color), "edgecolor": "white", "linewidth": 0.8}
+    )
 
 
 def _traffic(axes: Axes, view: View) -> None:

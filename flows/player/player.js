@@ -220,7 +220,7 @@
     ink.font = "700 12px system-ui, sans-serif"; ink.textAlign = "center"; ink.textBaseline = "middle";
     const wide = ink.measureText(actor.id).width + 12, p = pose(actor, now), [u, v] = toScreen(p.x, p.y);
     ink.strokeStyle = actor.color; ink.lineWidth = 1; ink.beginPath(); ink.moveTo(u, v); ink.lineTo(x, y); ink.stroke();
-    ink.fillStyle = actor.color; ink.strokeStyle = "#fff"; ink.lineWidth = 1.5;
+    ink.fillStyle = actor.label || actor.color; ink.strokeStyle = "#fff"; ink.lineWidth = 1.5;
     ink.beginPath(); ink.roundRect(x - wide / 2, y - 9, wide, 18, 9); ink.fill(); ink.stroke();
     ink.fillStyle = "#fff"; ink.fillText(actor.id, x, y + 0.5);
   }

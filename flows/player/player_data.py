@@ -24,9 +24,17 @@ from sgcad_core.result import CaseRecord
 
 COLORS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c564b", "#7f7f7f")
 """Okabe and Ito's palette (told apart by color-blind readers); first red and blue, as crash diagrams draw V1 and V2."""
+_LABELS = dict(
+    zip(COLORS, ("#b34f00", "#0072b2", "#007a59", "#9c4a78", "#8f6200", "#1d6f9f", "#8c564b", "#666666"), strict=True)
+)
 TRAFFIC_COLOR = "#c9cfd4"
 DIAGRAM_LIMIT = 3
 """Diagrams shown beside a player."""
+
+
+def label_color(color: str) -> str:
+    """The darker twin of an actor's color, on which white letters can be read (4.5 to 1, WCAG 2.1); else the color."""
+    return _LABELS.get(color, color)
 
 
 @dataclass(frozen=True)
@@ -187,7 +195,13 @@ def _track(mover: Mover) -> Track:
 
 
 def _actor(mover: Mover) -> dict[str, Any]:
-    return {**mover.info.model_dump(), "outline": mover.info.record.outline, "color": mover.color, **_path(mover.track)}
+    return {
+        **mover.info.model_dump(),
+        "outline": mover.info.record.outline,
+        "color": mover.color,
+        "label": label_color(mover.color),
+        **_path(mover.track),
+    }
 
 
 def traffic_shown(traffic: Background) -> list[dict[str, Any]]:

@@ -14,7 +14,7 @@
     }
   }
   const flatly = (v) => v && typeof v === "object" ? Object.entries(v).map(([k, one]) => `${k} ${show(one)}`).join(", ") : show(v);
-  const pill = (actor) => { const td = make("td"), p = make("span", actor.id, { className: "pill" }); p.style.background = actor.color; td.append(p); return td; };
+  const pill = (actor) => { const td = make("td"), p = make("span", actor.id, { className: "pill" }); p.style.background = actor.label || actor.color; td.append(p); return td; };
 
   // ---------------------------------------------------------------- units
   const UNITS = [["mph", 2.23694], ["km/h", 3.6], ["m/s", 1]];

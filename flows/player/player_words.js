@@ -81,7 +81,7 @@
       const number = hit[1] ? Number(hit[1]) : NUMBERS.indexOf(hit[2].toLowerCase()) + 1;
       const actor = data.actors.find((a) => a.id === `V${number}`);
       if (!actor) continue;
-      place.append(text.slice(from, hit.index), make("mark", hit[0], { style: `background:${actor.color}` }));
+      place.append(text.slice(from, hit.index), make("mark", hit[0], { style: `background:${actor.label || actor.color}` }));
       from = hit.index + hit[0].length;
     }
     place.append(text.slice(from));
@@ -128,7 +128,7 @@
     if (!own.length) row($("rules"), [make("td", "kept"), driven.kept ? `${driven.ego}: every rule that the map tells of` : "the map tells of no rule here"]);
     $("narrative").parentElement.querySelector(".hint").hidden = true; $("narrative").parentElement.firstElementChild.textContent = "What happened";
   }
-  for (const a of data.actors) { const line = make("span"), id = make("b", a.id); id.style.background = a.color; line.append(id, make("i", "", { style: "font-style:normal" })); line.tabIndex = 0; pointable(line, [a.id]); $("legend").append(line); }
+  for (const a of data.actors) { const line = make("span"), id = make("b", a.id); id.style.background = a.label || a.color; line.append(id, make("i", "", { style: "font-style:normal" })); line.tabIndex = 0; pointable(line, [a.id]); $("legend").append(line); }
   for (const url of data.diagrams) { const img = make("img", null, { src: url, alt: "Crash diagram of the report" }); img.onclick = () => img.classList.toggle("large"); $("diagrams").append(img); $("diagrams").hidden = false; }
   $("marks").hidden = !data.sentences.some((s) => s.mark);
   let read = 0;
@@ -162,7 +162,7 @@
   if (!driven) row($("collision"), ["realised", make("td", realised ? "yes" : "no", { className: realised ? (surely ? "yes" : "") : "no" })]);
   const net = data.network || {};
   for (const [k, v] of Object.entries(net)) if (k !== "segments") row($("network"), [words(k), v]);
-  if (data.place) row($("network"), ["real place", data.place]);
+  if (data.place) row($("network"), ["real place", data.place.replace(/^the real place is /, "")]);
   if (net.segments) row($("network"), ["roads (lanes →/←)", net.segments.map((s) => `${s.id} ${s.lanes_forward}/${s.lanes_backward}`).join(", ")]);
   const paper = data.metrics.paper || {}, exact = data.metrics.exact || {};
   const readings = driven ? [["", exact]] : [["paper's formula", paper], ["exact", exact]];

@@ -15,7 +15,7 @@ from plugins.tracker.attempts import Attempt, attempts_of, read_json, text_of
 from plugins.tracker.headline import in_words
 
 KINDS = {"read": "PARSER", "retrieve": "RETRIEVER", "simulate": "TOOL", "measure": "EVALUATOR", "judge": "EVALUATOR",
-         "drive": "TOOL", "draw": "TASK"}  # fmt: skip
+         "drive": "TOOL", "files": "TASK", "draw": "TASK"}  # fmt: skip
 """MLflow's types of spans by step; of others CHAIN."""
 CASE, MODEL = "WORKFLOW", "CHAT_MODEL"
 

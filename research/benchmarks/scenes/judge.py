@@ -3,9 +3,10 @@
     python -m research.benchmarks.scenes.judge [RUNS] [--random N] [--judge esmini] [--path BINARY] [--most N]
 
 Takes every scenario.xosc with its road.xodr and trajectories.csv (our playing of it) that lies under RUNS, the vehicles
-of its traffic among them; nothing that a run says of a judge is believed. With --random also crashes of two vehicles on
-so many seeded random maps: those that can be planned are played by both players, and where ours sees the declared
-contact the judge has to. Prints one line of figures each and the cases that disagree.
+of its traffic among them, and those of `sgcad export --traffic`; nothing that a run says of a judge is believed. With
+--random also crashes of two vehicles on so many seeded random maps: those that can be planned are played by both
+players, and where ours sees the declared contact the judge has to. Prints one line of figures each and the
+cases that disagree.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from flows.batch.second_simulator import show
 from flows.case_files import case_folder
 from flows.case_files.case_traffic import traffic_in
 from research.benchmarks.scenes.random_roads import random_crashes
+from research.benchmarks.written_files import written_files
 from sgcad_core.case.records import ActorInfo, RoadNetwork, Scenario
 from sgcad_core.errors import BadInput, SgcadError
 from sgcad_core.execution.compare_executions import judge
@@ -75,16 +77,33 @@ def _judged_runs(folder: Path, simulator: Simulator) -> Iterator[dict[str, Any]]
     The files are believed: trajectories.csv is our playing, scenario.xosc and road.xodr are what is judged. Raises
     BadInput where there is none, MissingTool.
     """
-    files = sorted(folder.glob("**/scenario.xosc"))
-    cases = [file.parent for file in files if (file.parent / "trajectories.csv").is_file()]
-    if not cases:
+    played_ones = [
+        f.parent for f in written_files(folder, "scenario.xosc") if (f.parent / "trajectories.csv").is_file()
+    ]
+    if not played_ones:
         raise BadInput(f"{folder}: no scenario.xosc with a trajectories.csv beside it; name a runs folder")
-    for case in cases:
-        yield _judged(case, simulator)
+    for place in played_ones:
+        yield _judged(place, simulator)
+
+
+def _result(place: Path) -> dict[str, Any]:
+    """The case's result.json; where traffic was put around it afterwards, that of the case with this traffic."""
+    around = place / "traffic.json"
+    if not around.is_file():
+        return cast("dict[str, Any]", _json(place / "result.json"))
+    case = _json(place.parents[2] / "result.json")  # CASE/export/traffic/DENSITY
+    return case | {"case": f"{case['case']}, {place.name} traffic", "traffic": _json(around)}
+
+
+def _json(file: Path) -> Any:
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as fault:
+        raise BadInput(f"{file}: cannot be read ({fault}); run the case again") from fault
 
 
 def _judged(case: Path, simulator: Simulator) -> dict[str, Any]:
-    result: dict[str, Any] = json.loads((case / "result.json").read_text(encoding="utf-8"))
+    result = _result(case)
     traffic = traffic_in(case, result)
     actors = (*(ActorInfo.model_validate(actor) for actor in result["actors"]), *(vehicle for vehicle, _ in traffic))
     declared = result["collision"]["declared"]

@@ -19,6 +19,7 @@ from typing import get_args
 
 from research.benchmarks.scenes.random_roads import random_networks
 from research.benchmarks.scenes.reimport import ASPECTS, Difference, Reader, differences
+from research.benchmarks.written_files import written_files
 
 READERS: tuple[Reader, ...] = get_args(Reader)
 Lost = Mapping[Reader, Sequence[Difference]]
@@ -47,7 +48,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _runs(folder: Path) -> Iterator[tuple[str, str, str]]:
-    for xodr in sorted(folder.rglob("road.xodr")):
+    for xodr in written_files(folder, "road.xodr"):
         net = xodr.with_name("road.net.xml")
         if net.exists():
             yield xodr.parent.name, net.read_text(encoding="utf-8"), xodr.read_text(encoding="utf-8")

@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from plugins.backbone.hf_load import load_tokenizer
+from research.benchmarks.written_files import written_files
 
 Counts = Mapping[tuple[str, str], Sequence[int]]
 """Tokens of each text, by stage ("road, first attempt") and what it is ("prompt", "answer")."""
@@ -28,7 +29,7 @@ LIMIT = 3000
 def counts(runs: Path, count: Callable[[str], int]) -> Counts:
     """The tokens of all prompts and answers below a folder."""
     found: dict[tuple[str, str], list[int]] = defaultdict(list)
-    for file in sorted(runs.rglob("attempts/*/*.txt")):
+    for file in written_files(runs, "attempts/*/*.txt"):
         stage, _, number = file.parent.name.partition("-")
         which = "first attempt" if int(number) == 1 else "further attempts"
         if file.stem in ("prompt", "answer"):

@@ -25,7 +25,8 @@ def test_a_report_is_read_on_the_spot_sentence_by_sentence():
 def test_a_case_folder_also_tells_what_was_written(tmp_path):
     run_case(load(ROOT / "configs" / "template.yaml"), Case(DEMO, "c1"), tmp_path, "d1")
     text = explain(tmp_path / "template" / "c1")
-    assert text.startswith("c1 (template)")
+    verdict = json.loads((tmp_path / "template" / "c1" / "result.json").read_text())["account"]["sentence"]
+    assert text.splitlines()[:2] == ["c1 (template)", verdict]
     assert "vehicles.V1.start_lane = " in text
     assert "roads." in text.partition("Inferred:")[2]
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import threading
 from pathlib import Path
@@ -10,6 +11,7 @@ import pytest
 
 from flows.batch import config_folder
 from flows.case import person_facts, revise_case
+from flows.case.revise_command import _told
 from flows.case.run_case import run_case
 from flows.case_files import find_cases
 from flows.case_files.find_cases import Case
@@ -176,6 +178,14 @@ def test_facts_beside_a_report_hold_on_a_later_run_and_its_stamp_tells(tmp_path,
     ending = run_case(config, made, tmp_path / "other", find_cases.digest_of(made, config))
     assert ending.result["collision"]["declared"]["struck_area"] == "front"
     assert ending.result["person"] == {"facts": 1, "disagreed": 1, "read": {"contacts.0.struck_area": "left"}}
+
+
+def test_the_verdict_is_told_after_a_revision(case):
+    revised = revise_case.revise(case, {"vehicles.V1.speed_mph": 25})
+    first, verdict, *_, last = _told(revised)
+    assert first == "c1: generated, as declared"
+    assert verdict == revised.result["account"]["sentence"]
+    assert re.fullmatch(r"in \d+\.\d s", last)
 
 
 def test_a_revised_case_is_done_for_the_batch(config, case):

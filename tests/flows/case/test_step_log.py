@@ -55,6 +55,7 @@ def test_a_case_tells_its_steps_in_the_order_of_its_work(reports, config_file, t
     assert told == [step["name"] for step in kept]
     assert list(dict.fromkeys(told)) == [
         "read", "retrieve[road]", "road[1]", "retrieve[scenario]", "scenario[1]", "simulate", "measure", "draw",
+        "files",
     ]  # fmt: skip
     assert all(later["began_s"] >= sooner["ended_s"] for sooner, later in pairwise(kept))
 

@@ -11,6 +11,25 @@ from typing import Any
 from research.checks.mlflow_pages import Browser, browsing
 
 WAIT_S = 60.0
+POOR = """
+const linear = v => v <= .03928 ? v / 12.92 : ((v + .055) / 1.055) ** 2.4;
+const lum = c => { const [r, g, b] = c.map(v => linear(v / 255));
+  return .2126 * r + .7152 * g + .0722 * b; };
+const parts = c => (c.match(/[\\d.]+/g) || []).map(Number);
+const ground = e => { for (; e; e = e.parentElement) { const c = parts(getComputedStyle(e).backgroundColor);
+  if (c.length === 3 || c[3] > .99) return c.slice(0, 3); } return [255, 255, 255]; };
+const poor = [], WRITTEN = 'input:not([type=file], [type=range], [type=checkbox]), select';
+for (const e of document.querySelectorAll('body *')) {
+  if (e.closest('svg, iframe, [hidden]') || !e.getClientRects().length) continue;
+  if (![...e.childNodes].some(n => n.nodeType === 3 && n.textContent.trim()) && !e.matches(WRITTEN)) continue;
+  const s = getComputedStyle(e), size = parseFloat(s.fontSize);
+  const large = size >= 24 || (size >= 18.7 && Number(s.fontWeight) >= 700);
+  const [a, b] = [lum(parts(s.color)), lum(ground(e))].sort((x, y) => y - x), ratio = (a + .05) / (b + .05);
+  if (ratio < (large ? 3 : 4.5) && s.opacity !== '0')
+    poor.push(`${ratio.toFixed(2)} ${e.tagName}.${e.className}: ${e.textContent.slice(0, 40)}`);
+}
+"""
+"""Collects what is written with too little contrast, WCAG 2.1, 1.4.3: 4.5, 3 for large letters."""
 KEYS = {"Enter": 13, "Escape": 27, "Tab": 9, "ArrowLeft": 37, "ArrowRight": 39, " ": 32}
 
 
@@ -69,6 +88,14 @@ class Walker:
 
     def size(self, width: int, height: int, mobile: bool = False) -> None:
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=mobile)
+
+    def theme(self, name: str) -> None:
+        """What the person prefers: light or dark."""
+        self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": name}])
+
+    def poor(self) -> list[str]:
+        """What is written on the page with too little contrast to be read."""
+        return list(self.run(f"(() => {{ {POOR}; return poor; }})()"))
 
     def open(self, url: str) -> None:
         self.run("window.walkedBefore = true")

@@ -44,6 +44,7 @@ def walker(tab):
     """The tab; whatever a test did, nothing may have gone wrong in the page."""
     tab.faults.clear()
     tab.size(1440, 900)
+    tab.theme("light")
     yield tab
     tab.run("1")
     assert tab.faults == []
@@ -244,34 +245,17 @@ def test_what_has_the_focus_shows_it(walker, desk, case):
             assert shown, walker.run("document.activeElement.outerHTML.slice(0, 200)")
 
 
-LUMINANCE = """
-const linear = v => v <= .03928 ? v / 12.92 : ((v + .055) / 1.055) ** 2.4;
-const lum = c => { const [r, g, b] = c.map(v => linear(v / 255));
-  return .2126 * r + .7152 * g + .0722 * b; };
-const parts = c => (c.match(/[\\d.]+/g) || []).map(Number);
-const ground = e => { for (; e; e = e.parentElement) { const c = parts(getComputedStyle(e).backgroundColor);
-  if (c.length === 3 || c[3] > .99) return c.slice(0, 3); } return [255, 255, 255]; };
-const poor = [];
-for (const e of document.querySelectorAll('body *')) {
-  if (e.closest('svg, iframe, [hidden]') || !e.getClientRects().length) continue;
-  if (![...e.childNodes].some(n => n.nodeType === 3 && n.textContent.trim()) && !e.matches('input, select')) continue;
-  const s = getComputedStyle(e), size = parseFloat(s.fontSize);
-  const large = size >= 24 || (size >= 18.7 && Number(s.fontWeight) >= 700);
-  const [a, b] = [lum(parts(s.color)), lum(ground(e))].sort((x, y) => y - x), ratio = (a + .05) / (b + .05);
-  if (ratio < (large ? 3 : 4.5) && s.opacity !== '0')
-    poor.push(`${ratio.toFixed(2)} ${e.tagName}.${e.className}: ${e.textContent.slice(0, 40)}`);
-}
-"""
-
-
-def test_everything_written_can_be_read(walker, desk, case, runs):
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_everything_written_can_be_read(walker, desk, case, runs, theme):
     """Contrast of at least 4.5 (3 for large letters), WCAG 2.1, 1.4.3."""
+    walker.theme(theme)
     for name, status in (("a", "refused"), ("b", "failed"), ("c", "exhausted")):
         foreign(runs / "kit", name, status=status, reason="for a reason")
     for page in (f"{desk}/", f"{desk}/?status=failed", case, f"{desk}/case/kit/a", f"{desk}/nowhere"):
         walker.open(page)
         walker.run("document.querySelectorAll('details').forEach(d => { d.open = true; })")
-        assert walker.run(f"(() => {{ {LUMINANCE}; return poor; }})()") == [], page
+        assert walker.poor() == [], page
+        assert walker.run("getComputedStyle(document.documentElement).colorScheme") == theme
         walker.faults[:] = [f for f in walker.faults if "404" not in f]
 
 

@@ -85,3 +85,11 @@ def test_the_page_of_a_drive_says_its_outcome_and_goes_on_behind_the_contact(tab
         == []
     )
     assert "did not yield" in tab.run("document.querySelector('#rules').textContent") or told["ego"] == "V2"
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_a_drive_can_be_read_in_the_light_and_in_the_dark(tab, folder, theme):
+    tab.theme(theme)
+    tab.open(f"file://{next(folder.glob('drive/aeb/*/drive.html'))}?{theme}")
+    assert tab.poor() == []
+    tab.theme("light")

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from flows.case_files import case_folder
 from flows.cli import app
 from flows.drive import table
-from flows.drive.run_drive import Order, drive_folders
+from flows.drive.run_drive import Order, drive_folders, first_page
 from flows.drive.script_of_case import case_folders, roles_of
 from sgcad_core.config import build, driver_entry
 from sgcad_core.errors import BadInput, ConfigError
@@ -56,6 +56,7 @@ def test_a_case_is_driven_in_both_roles_and_its_script_left_alone(case):
     ended = run(case, "-d", "reference", "-d", "script")
     assert ended.exit_code == 0, ended.output
     assert {f.name: f.read_bytes() for f in case.iterdir() if f.is_file()} == before
+    assert ended.output.splitlines()[-1] == f"look at: {case}/drive/reference/V1/drive.html"
     found = sorted(str(f.relative_to(case)) for f in case.rglob("drive.json"))
     assert found == [f"drive/{d}/{v}/drive.json" for d in ("reference", "script") for v in ("V1", "V2")]
     told = json.loads((case / "drive/script/V1/drive.json").read_text())
@@ -99,6 +100,7 @@ def test_what_is_driven_is_not_driven_again_until_something_changes(case):
     first = file.stat().st_mtime_ns
     driven([case], order, 1)
     assert file.stat().st_mtime_ns == first
+    assert first_page([case], order) is None
     driven(
         [case], Order((driver_entry({"name": "reference", "model": "fuzzy", "label": "reference"}),), pages=False), 1
     )

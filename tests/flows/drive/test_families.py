@@ -29,6 +29,9 @@ def test_a_family_is_written_with_a_reason_for_every_value(case):
     assert {k["value_is"] for k in told["kept"]} <= {"report fact", "inferred", "default"}
     names = [p["name"] for p in told["parameters"]]
     assert all(list(m["values"]) == names for m in told["members"])
+    assert ended.output.splitlines() == [
+        f"{told['case']}: 6 members that crash as declared, of {told['drawn']} that were drawn", f"results: {place}",
+    ]  # fmt: skip
     for name in ("logical", "deterministic", "stochastic"):
         assert (place / f"{name}.xosc").is_file()
 
@@ -57,6 +60,13 @@ def test_the_hardest_for_a_driver_are_told_with_weights_and_what_decides(case):
     assert 0 <= told["rule_rate"] <= 1
     assert hard == sorted(hard, reverse=True)
     assert all(-1 <= v <= 1 for v in told["decides"].values())
+    said = ended.output.splitlines()
+    rate = f"{100 * min(told['contact_rate'], 1):.0f} %"
+    assert said[1].startswith(f"aeb drives V1 (responder): touches in {rate} of them, breaks a rule in ")
+    assert said[2].startswith(f"hardest: {told['hardest'][0]['outcome']}, ")
+    assert f"{hard[0]:.1f} m/s" in said[2] or f"{-hard[0]:.1f} m clear" in said[2]
+    assert said[-2].startswith("what decides (rank correlation): ")
+    assert said[-1] == f"results: {place}"
     assert (place / "decides.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from flows.player import overview_png, player_page
-from flows.player.player_data import View
+from flows.player.player_data import View, label_color
 from flows.player.road_shapes import drawing_of
 from sgcad_core.case.records import (
     ActorInfo,
@@ -155,7 +155,8 @@ def test_the_picture_shows_everyone_in_color(contact):
     assert image.size == (704, 704)
     colors = {color for _, color in image.getcolors(maxcolors=1 << 20)}
     for mover in made.movers:
-        assert tuple(int(mover.color[i : i + 2], 16) for i in (1, 3, 5)) in colors
+        label = label_color(mover.color)
+        assert tuple(int(label[i : i + 2], 16) for i in (1, 3, 5)) in colors
     assert ((0xD7, 0x26, 0x3D) in colors) is contact
 
 

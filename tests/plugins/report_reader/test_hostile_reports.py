@@ -13,9 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
+from plugins.report_reader._pdf_pages import MAX_DRAWN, _long_palette
 from plugins.report_reader.auto import Auto
 from plugins.report_reader.evidence import MAX_NARRATIVE, diagram
-from plugins.report_reader.pdf import MAX_DRAWN, _long_palette
 from sgcad_core.errors import BadInput
 from sgcad_core.system.report_files import read_regular
 from tests.plugins.report_reader.test_readers import NARRATIVE, folder, png

@@ -9,6 +9,7 @@ import pytest
 
 from sgcad_core.case.records import Hold, RoadNetwork
 from sgcad_core.errors import InvalidOutput
+from sgcad_core.execution.contact import first_contact
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.records.specs import BehaviorSpec, Contact, Evasion, NearCrash
@@ -46,6 +47,24 @@ def test_parameters_slow_shift_and_smooth_the_crash_and_lanes_hold_the_starts():
                           'name="V2_TimeScale" parameterType="double" value="2"')  # fmt: skip
     slow = {t.actor: t for t in play(slower, network.xodr)}
     assert np.allclose(slow["V2"].points[40:120:2], plain["V2"].points[20:60], atol=1e-3)
+
+
+@pytest.mark.parametrize("after_s", [0.0, 1.0])
+@pytest.mark.parametrize("version", ["1.0", "1.2"])
+def test_a_parameter_ends_the_file_a_time_behind_the_declared_contact(after_s, version):
+    network = crossroads()
+    scenario = compile_scenario(CROSSING, network, version)
+    whole = play(scenario.xosc, network.xodr)
+    met = first_contact(whole, {actor.id: (actor.length_m, actor.width_m) for actor in scenario.actors})
+    told = re.sub(r'("TimeAfterContact" parameterType="double" value=)"[^"]+"', rf'\1"{after_s:g}"', scenario.xosc)
+    assert told != scenario.xosc
+    assert play(told, network.xodr)[0].t_s[-1] == pytest.approx(met.t_s + after_s, abs=0.051)
+    assert whole[0].t_s[-1] > met.t_s + 2.0
+
+
+def test_a_file_without_a_contact_has_no_time_behind_it():
+    alone = CROSSING.model_copy(update={"contacts": ()})
+    assert "TimeAfterContact" not in compile_scenario(alone, crossroads()).xosc
 
 
 def test_the_same_behavior_gives_the_same_file():

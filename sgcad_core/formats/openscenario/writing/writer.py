@@ -37,10 +37,10 @@ from sgcad_core.formats.openscenario.writing.parts import (
 )
 from sgcad_core.formats.openscenario.writing.versions import DEFAULT_VERSION, Version
 from sgcad_core.formats.openscenario.writing.vertices import held_at_standstill, vertex_rows
-from sgcad_core.records.specs import BehaviorSpec
+from sgcad_core.records.specs import BehaviorSpec, Contact
 
-END, FRICTION = "EndTime", "Friction"
-"""Parameters of the file: when it stops, seconds; the friction of the road."""
+END, FRICTION, AFTER = "EndTime", "Friction", "TimeAfterContact"
+"""Parameters of the file: when it stops, s; the friction of the road; how long it goes on behind the contact, s."""
 FACES_RAD = 0.5
 """An actor that is turned further against its lane begins at a place in the world."""
 _WRITING = threading.Lock()
@@ -54,8 +54,9 @@ class Handles:
     """Parameters by which people change a written scenario, at the values at which it is what was planned.
 
     `<actor>_TimeScale` (its motion slower above 1) and `<actor>_TimeOffset` (later, seconds) of timed polylines,
-    `<actor>_Speed` (at the start, m/s) of events, `Friction` where the surface is stated. With `xodr` actors begin at
-    places in lanes, where lanes hold them to the millimetre.
+    `<actor>_Speed` (at the start, m/s) of events, `Friction` where the surface is stated, `TimeAfterContact` where a
+    contact is declared (as long as the file: at 0 it stops there). With `xodr` actors begin at places in lanes, where
+    lanes hold them to the millimetre.
     """
 
     xodr: str | None = None
@@ -106,12 +107,14 @@ def write_xosc(
     with library_version(minor):
         surroundings = environment(behavior, minor)
         declared = {END: rounded(max(t.t_s[-1] for t in moves))} | _handles(parts, surroundings, handles)
+        contact = behavior.contacts[0] if handles and behavior and behavior.contacts and told else None
+        declared |= {AFTER: declared[END]} if contact else {}
         scenario = xosc.Scenario(
             _NOT_XML.sub("?", name),
             "SG-CADVLM",
             _parameters(declared),
             _entities(actors, minor),
-            _storyboard(parts, surroundings, speeds=bool(handles) and told is None),
+            _storyboard(parts, surroundings, _stop(contact), speeds=bool(handles) and told is None),
             _road_network(road_file, signals),
             xosc.Catalog(),
             osc_minor_version=minor,
@@ -222,11 +225,29 @@ class _Timed:
         return group(name, {f"{name}_maneuver": [event]})
 
 
+def _stop(contact: Contact | None) -> xosc.Trigger:
+    """What ends the file: the clock, or a time behind the declared contact."""
+    ends = [at_time("end", f"${END}", xosc.Rule.greaterThan, "stop")]
+    if contact:
+        touched = xosc.CollisionCondition(contact.struck)
+        told = "after_contact", f"${AFTER}", xosc.ConditionEdge.none, touched, contact.striker
+        ends.append(xosc.EntityTrigger(*told, triggeringpoint="stop"))
+    stop = xosc.Trigger("stop")
+    for end in ends:
+        group_of_one = xosc.ConditionGroup("stop")
+        group_of_one.add_condition(end)
+        stop.add_conditiongroup(group_of_one)
+    return stop
+
+
 def _storyboard(
-    actors: Sequence[_Timed] | Sequence[EventActor], surroundings: xosc.Environment | None, *, speeds: bool
+    actors: Sequence[_Timed] | Sequence[EventActor],
+    surroundings: xosc.Environment | None,
+    stop: xosc.Trigger,
+    *,
+    speeds: bool,
 ) -> xosc.StoryBoard:
-    end = at_time("end", f"${END}", xosc.Rule.greaterThan, "stop")
-    board = xosc.StoryBoard(_init(actors, surroundings, speeds=speeds), end)
+    board = xosc.StoryBoard(_init(actors, surroundings, speeds=speeds), stop)
     act = xosc.Act("act", at_once("start"))
     for actor in actors:
         act.add_maneuver_group(actor.group())

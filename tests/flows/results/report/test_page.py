@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from flows.cli import app
 from flows.results.report.page import page
 from flows.results.report.plots import Plot
+from tests.flows.desk.browser import walking
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 EVIL = (
@@ -64,6 +65,22 @@ def test_the_gallery_holds_what_a_case_came_to(tables, tmp_path):
     assert "refused for a reason" in cases[1]["arms"][0]["why"]
     assert [m["id"] for m in first["draw"]["movers"]] == ["V1", "V2"]
     assert len(first["draw"]["lanes"]) == 6
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium to look with")
+def test_the_page_can_be_read_in_the_light_and_in_the_dark(tables, tmp_path):
+    cases = {"c1": {}, "c2": {"status": "refused"}, "c3": {"status": "failed"}, "c4": {"status": "exhausted"}}
+    file = tmp_path / "r.html"
+    file.write_text(made(tables, tmp_path, {"a": cases, "b": {"c1": {"realised": False}}}))
+    with walking(CHROMIUM) as walker:
+        for theme in ("light", "dark"):
+            walker.theme(theme)
+            walker.open(f"file://{file}?{theme}")
+            walker.until("document.querySelectorAll('.tile').length >= 5")
+            assert walker.poor() == []
+            assert walker.run("getComputedStyle(document.documentElement).colorScheme") == theme
+        assert walker.faults == []
 
 
 def test_a_case_is_small_so_that_500_stay_quick(tables, tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -42,18 +43,43 @@ def test_a_player_that_agrees_is_counted_as_agreeing(runs, tmp_path, capsys):
     assert row == ["runs", "esmini", "1/1", "1/1", "0.0000", "0.0000", "1/1"]
 
 
-def test_vehicles_of_the_traffic_are_judged_too(runs, tmp_path, capsys):
-    case = runs / "template" / "c1"
+def test_a_copy_that_a_tracker_keeps_is_not_counted(runs, tmp_path, capsys):
+    shutil.copytree(runs / "template" / "c1", runs / "mlflow-artifacts" / "1" / "run" / "artifacts")
+    judged(runs, tmp_path, ("V1", 0.0, 0.0, 0.0, 10.0, 1.4), ("V2", 12.0, 0.0, 0.0, 0.0, 1.4))
+    assert " 1/1 " in next(line for line in capsys.readouterr().out.splitlines() if "esmini" in line)
+
+
+def put_traffic(case, folder):
+    """Its files with one more vehicle, written to a folder; the record of the traffic."""
     info = ACTORS[0].model_copy(update={"id": "traffic1"})
     track = MOVES[0].model_copy(update={"actor": "traffic1", "y_m": MOVES[0].y_m + 20.0})
-    (case / "scenario.xosc").write_text(with_background((case / "scenario.xosc").read_text(), [info], [track]))
-    case_folder.write_trajectories(case / "trajectories.csv", MOVES, [track])
+    (folder / "scenario.xosc").write_text(with_background((case / "scenario.xosc").read_text(), [info], [track]))
+    case_folder.write_trajectories(folder / "trajectories.csv", MOVES, [track])
+    return {"vehicles": [info.model_dump()]}
+
+
+def test_vehicles_of_the_traffic_are_judged_too(runs, tmp_path, capsys):
+    case = runs / "template" / "c1"
     result = json.loads((case / "result.json").read_text())
-    (case / "result.json").write_text(json.dumps(result | {"traffic": {"vehicles": [info.model_dump()]}}))
+    (case / "result.json").write_text(json.dumps(result | {"traffic": put_traffic(case, case)}))
     crash = ("V1", 0.0, 0.0, 0.0, 10.0, 1.4), ("V2", 12.0, 0.0, 0.0, 0.0, 1.4)
     assert judged(runs, tmp_path, *crash, ("traffic1", 0.0, 20.0, 0.0, 10.0, 1.4)) == 0
     assert judged(runs, tmp_path, *crash, ("traffic1", 0.0, 21.0, 0.0, 10.0, 1.4)) == 1
     assert "traffic1 at 0.00 s is 1.000 m beside our playing" in " ".join(capsys.readouterr().out.split())
+
+
+def test_traffic_that_was_put_around_a_case_afterwards_is_judged_with_it(runs, tmp_path, capsys):
+    case = runs / "template" / "c1"
+    around = case / "export" / "traffic" / "light"
+    around.mkdir(parents=True)
+    (around / "traffic.json").write_text(json.dumps(put_traffic(case, around)))
+    shutil.copy(case / "road.xodr", around)
+    both = ("V1", 0.0, 0.0, 0.0, 10.0, 1.4), ("V2", 12.0, 0.0, 0.0, 0.0, 1.4), ("traffic1", 0.0, 20.0, 0.0, 10.0, 1.4)
+    assert judged(runs, tmp_path, *both) == 0
+    assert " 2/2 " in next(line for line in capsys.readouterr().out.splitlines() if "esmini" in line)
+    (around / "traffic.json").write_text("{")
+    assert judged(runs, tmp_path, *both) == 2
+    assert "traffic.json: cannot be read" in capsys.readouterr().err
 
 
 def test_one_that_does_not_is_told_with_actor_and_time(runs, tmp_path, capsys):
