@@ -1,13 +1,14 @@
 """llama.cpp behind the package llama-cpp-python: one model with one memory of keys and values, as plain calls.
 
-Only here are pointers and structures of the library. Knows token ids, sequences and positions; no prompt, no report.
+Only here and in `projector` are pointers and structures of the library. Knows token ids, sequences and positions; no prompt, no report.
 """
 
 from __future__ import annotations
 
 import ctypes
 import weakref
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -63,7 +64,7 @@ class Model:
         """Raises ConfigError for a file that llama.cpp does not load or that the token loop cannot run."""
         self.api = api()
         self.file = file
-        _quiet(self.api)
+        quiet(self.api.llama_log_set)
         self.api.llama_backend_init()
         params = self.api.llama_model_default_params()
         params.n_gpu_layers = gpu_layers
@@ -211,12 +212,23 @@ class Session:
         return found
 
 
-def _quiet(found: Any) -> None:
-    """Switches the library's log off; the callback must outlive every call."""
+def quiet(setter: Any) -> None:
+    """Switches a log of the library off, by the function that sets it; the callback must outlive every call."""
     global _silence
     if _silence is None:
-        _silence = found.llama_log_callback(lambda *_: None)
-    found.llama_log_set(_silence, ctypes.c_void_p(0))
+        _silence = api().llama_log_callback(lambda *_: None)
+    setter(_silence, ctypes.c_void_p(0))
+
+
+@contextmanager
+def log_into(said: list[str], setter: Any) -> Iterator[None]:
+    """Collects what the library says meanwhile; switches the log off afterwards."""
+    heard = api().llama_log_callback(lambda _, text, __: said.append(text.decode("utf-8", errors="replace")))
+    setter(heard, ctypes.c_void_p(0))
+    try:
+        yield
+    finally:
+        quiet(setter)
 
 
 _silence: Any = None
