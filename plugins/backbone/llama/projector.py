@@ -120,6 +120,7 @@ class Projector:
             raise OutOfCells("the memory of keys and values is full")
         if code:
             raise RuntimeError(f"llama.cpp could not compute a picture of {shown.tokens} tokens (code {code})")
+        session.hold(sequence, position)
 
     def _encoded(self, shown: Shown, digest: str) -> Any:
         """Vectors (tokens, width) of a picture, kept by its digest."""
