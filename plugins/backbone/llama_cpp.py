@@ -103,8 +103,8 @@ class LlamaCpp(Backbone):
         other = decoder.contrast_context(context)
         if other is not None and other.narrative == context.narrative and not self.projector:
             raise ConfigError(
-                f"decoder {type(decoder).__name__} contrasts pictures, which backbone 'llama_cpp' does not show without "
-                "backbone.projector; name the model's mmproj file, or use decoder 'cad'"
+                f"decoder {type(decoder).__name__} contrasts pictures, which backbone 'llama_cpp' does not show "
+                "without backbone.projector; name the model's mmproj file, or use decoder 'cad'"
             )
         return parts(other, query)
 

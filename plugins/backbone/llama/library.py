@@ -1,6 +1,7 @@
 """llama.cpp behind the package llama-cpp-python: one model with one memory of keys and values, as plain calls.
 
-Only here and in `projector` are pointers and structures of the library. Knows token ids, sequences and positions; no prompt, no report.
+Only here and in `projector` are pointers and structures of the library. Knows token ids, sequences and positions; no
+prompt, no report.
 """
 
 from __future__ import annotations

@@ -82,8 +82,8 @@ class GgufPrompts:
         text = self.words.text(parts, len(parts.diagrams))
         if (shown := text.count(MARKER)) != len(parts.diagrams):
             raise ConfigError(
-                f"the chat template of {self.projector.model.file.name} shows {shown} of {len(parts.diagrams)} pictures; "
-                "use another file of the model, or report_reader.use_diagrams: false"
+                f"the chat template of {self.projector.model.file.name} shows {shown} of {len(parts.diagrams)} "
+                "pictures; use another file of the model, or report_reader.use_diagrams: false"
             )
         pieces = self.projector.pieces(text, self.words.begins(text), [_bitmap(one) for one in parts.diagrams])
         return _joined(pieces)

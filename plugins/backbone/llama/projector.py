@@ -1,4 +1,4 @@
-"""A projector file (mmproj) behind llama.cpp's library for pictures (mtmd): from pixels to vectors of the model's width.
+"""A projector file (mmproj) behind llama.cpp's library for pictures (mtmd): from pixels to vectors that a model reads.
 
 Only here and in `library` are pointers and structures. The library cuts and spells a picture as each family wants it;
 pictures are encoded once while they are asked for again. Knows no report.

@@ -1,4 +1,4 @@
-"""A text model of transformers written as one GGUF file, as llama.cpp's converter writes it: no download, nothing packed."""
+"""A text model of transformers as one GGUF file, as llama.cpp's converter writes it: no download, nothing packed."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ TEMPLATE = "{% for m in messages %}{{ m.role }}: {{ m.content }}\n{% endfor %}"
 
 
 def write(file: Path, model: Any, tokenizer: Any, kind: str = "llama", template: str = TEMPLATE) -> Path:
-    """Writes config, tokenizer and weights (float32) of a Llama, or of the language model of a tiny Qwen3-VL or Gemma 3.
+    """Writes config, tokenizer and weights (float32) of a Llama or of a tiny Qwen3-VL's or Gemma 3's language model.
 
     Needs the package gguf.
     """
@@ -83,7 +83,7 @@ def _shapes(made: Any, config: Any) -> None:
 
 
 def whole(tokenizer: Any, size: int) -> list[str]:
-    """Names for the ids behind a tokenizer's own, the last of them GPT-2's end of a text; none where it has them all."""
+    """Names for the ids behind a tokenizer's own, the last of them GPT-2's end of a text; none where it has all."""
     left = size - len(tokenizer)
     return [f"<extra{i}>" for i in range(left - 1)] + ["<|endoftext|>"] if left else []
 

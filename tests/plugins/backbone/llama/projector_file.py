@@ -1,4 +1,4 @@
-"""The vision tower of a tiny Qwen3-VL or Gemma 3 of transformers as a projector file, as llama.cpp's converter writes it."""
+"""The vision tower of a tiny Qwen3-VL or Gemma 3 of transformers as a projector file, as llama.cpp's converter does."""
 
 from __future__ import annotations
 
