@@ -22,7 +22,7 @@ from plugins.backbone.engine.check import reference
 from plugins.backbone.engine.records import Answer
 from research.benchmarks.decoding import decode_setup as setup
 from research.benchmarks.decoding import decode_table as table
-from research.benchmarks.decoding import decode_turns
+from research.benchmarks.decoding.costs import in_turn
 from research.benchmarks.decoding.decode_bench import (
     ALPHA,
     REPAIR,
@@ -172,7 +172,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     for name in sizes:
         bench = Bench(setup.SIZES[name], device, told.rounds)
         if told.turns:
-            text.append(decode_turns.table(bench, told.turns))
+            text.append(in_turn.table(bench, told.turns))
             continue
         parts = [one_report(bench), many_reports(bench, told.reports), attempts(bench)]
         text.append(table.section(bench, parts, table.grammar_cost(bench), table.floors(bench)))

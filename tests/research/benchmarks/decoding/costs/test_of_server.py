@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from research.benchmarks.decoding import server_cost
+from research.benchmarks.decoding.costs import of_server
 from research.benchmarks.decoding.served import serving
 from research.benchmarks.decoding.served_model import ServedModel
 from research.benchmarks.decoding.server_contrast import random_model
@@ -15,7 +15,7 @@ from research.benchmarks.decoding.server_contrast import random_model
 def test_every_arm_has_answers_tokens_and_a_ratio(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = random_model(tmp_path)
     with serving(ServedModel(folder, window=8192), "served") as url:
-        server_cost.main(
+        of_server.main(
             ["--base-url", url, "--protocol", "vllm", "--tokenizer", str(folder), "--process", str(os.getpid()),
              "--answers", "1"]
         )  # fmt: skip

