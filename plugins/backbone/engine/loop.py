@@ -7,6 +7,7 @@ raises, its reports go on one by one. Knows requests and rows; no prompt format.
 
 from __future__ import annotations
 
+import atexit
 import queue
 import sys
 import threading
@@ -14,6 +15,7 @@ from collections import deque
 from concurrent.futures import Future
 from functools import partial
 from typing import Any
+from weakref import WeakSet
 
 import torch
 
@@ -26,6 +28,8 @@ from plugins.backbone.engine.scoring import ScoredChunk, averaged, score_chunks
 
 _GUESSES = 64
 """Guessed tokens a step, shared by the reports in it: more would cost more than they save."""
+_PATIENCE = 10.0
+"""Seconds that an interpreter which ends waits for a loop's last step."""
 
 
 def engine_of(
@@ -44,7 +48,7 @@ def engine_of(
 
 
 class Engine:
-    """The token loop of one model. Close it, or leave it: its thread is a daemon."""
+    """The token loop of one model. Close it, or leave it: its thread is a daemon, which ends before the interpreter."""
 
     def __init__(self, rows: Rows, reports_at_once: int = 8) -> None:
         self.runner = rows
@@ -86,6 +90,7 @@ class Engine:
             if self.thread is None:
                 self.thread = threading.Thread(target=self._run_loop, name="token-loop", daemon=True)
                 self.thread.start()
+                _STARTED.add(self)
             self.arrivals.put(job)
         return job.future
 
@@ -236,3 +241,15 @@ class Engine:
         for job in [*self.jobs, *self.waiting]:
             closed = EngineFault(f"the engine was closed before this report was answered{self.reason}")
             job.resolve(fault if isinstance(fault, Exception) else closed)
+
+
+_STARTED: WeakSet[Engine] = WeakSet()
+
+
+@atexit.register
+def _end_all() -> None:
+    """Waits for every loop: an interpreter stops daemons anywhere, and within torch that aborts the process."""
+    for engine in list(_STARTED):
+        engine.end()
+        if engine.thread:
+            engine.thread.join(_PATIENCE)

@@ -27,12 +27,17 @@ _KEPT_LIST = 4096
 
 @dataclass(frozen=True)
 class Header:
-    """What a file says of itself. `size`: bytes of all its parts; `parameters`: numbers in the tensors of this part."""
+    """What a file says of itself. `size`: bytes of all its parts; `shapes`: sizes of the tensors of this part."""
 
     architecture: str
     told: dict[str, Any]
-    parameters: int
+    shapes: dict[str, tuple[int, ...]]
     size: int
+
+    @property
+    def parameters(self) -> int:
+        """Numbers in the tensors of this part."""
+        return sum(math.prod(shape) for shape in self.shapes.values())
 
     def number(self, name: str, default: int = 0) -> int:
         """A number of the architecture; of a list over layers the largest."""
@@ -79,8 +84,8 @@ def _read(opened: BinaryIO, size: int) -> Header:
     if max(tensors, keys) > _MOST:
         raise ValueError(f"it claims {tensors} tensors and {keys} keys")
     told = {_text(opened): _value(opened, _take(opened, "<I")[0]) for _ in range(keys)}
-    count = sum(_tensor(opened) for _ in range(tensors))
-    return Header(str(told.get("general.architecture", "")), told, count, size)
+    shapes = dict(_tensor(opened) for _ in range(tensors))
+    return Header(str(told.get("general.architecture", "")), told, shapes, size)
 
 
 def _take(opened: BinaryIO, form: str) -> tuple[Any, ...]:
@@ -108,12 +113,12 @@ def _value(opened: BinaryIO, kind: int) -> Any:
     return _take(opened, _SCALARS[kind])[0]
 
 
-def _tensor(opened: BinaryIO) -> int:
-    """Numbers in the tensor whose entry comes next."""
-    _text(opened)
+def _tensor(opened: BinaryIO) -> tuple[str, tuple[int, ...]]:
+    """Name and shape of the tensor whose entry comes next."""
+    name = _text(opened)
     (dimensions,) = _take(opened, "<I")
     if dimensions > 8:
         raise ValueError(f"a tensor of {dimensions} dimensions")
     shape = _take(opened, f"<{dimensions}Q")
     _take(opened, "<IQ")
-    return math.prod(shape)
+    return name, shape

@@ -1,13 +1,15 @@
 """llama.cpp behind the package llama-cpp-python: one model with one memory of keys and values, as plain calls.
 
-Only here are pointers and structures of the library. Knows token ids, sequences and positions; no prompt, no report.
+Only here and in `projector` are pointers and structures of the library. Knows token ids, sequences and positions; no
+prompt, no report.
 """
 
 from __future__ import annotations
 
 import ctypes
 import weakref
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -24,6 +26,7 @@ BATCH = 512
 """Tokens of one call."""
 OUTPUTS = 128
 """Tokens of one call whose logits are wanted."""
+MOST_SEQUENCES = 256
 _NO_ROOM = 1
 _BUFFER = 1 << 14
 
@@ -63,7 +66,7 @@ class Model:
         """Raises ConfigError for a file that llama.cpp does not load or that the token loop cannot run."""
         self.api = api()
         self.file = file
-        _quiet(self.api)
+        quiet(self.api.llama_log_set)
         self.api.llama_backend_init()
         params = self.api.llama_model_default_params()
         params.n_gpu_layers = gpu_layers
@@ -82,6 +85,7 @@ class Model:
         self.vocab = self.api.llama_model_get_vocab(self.pointer)
         self.vocabulary = int(self.api.llama_vocab_n_tokens(self.vocab))
         self.trained = int(self.api.llama_model_n_ctx_train(self.pointer))
+        self.slides = int(self.api.llama_model_n_swa(self.pointer)) > 0
 
     def _unfit(self) -> str:
         asked = {
@@ -130,14 +134,25 @@ class Model:
 
 
 class Session:
-    """One memory of `cells` keys and values for up to `sequences` sequences, which may share their beginnings."""
+    """One memory of `cells` keys and values for up to `sequences` sequences, which may share their beginnings.
+
+    Where layers slide over the last tokens, llama.cpp writes over cells that have left the window of their only
+    sequence, also where a kept beginning will be continued before them. So each sequence has a shadow there that holds
+    the same cells: what two sequences hold stays.
+    """
 
     def __init__(self, model: Model, cells: int, sequences: int, threads: int | None, flash: bool | None) -> None:
         """`flash`: flash attention, None where the library decides. Raises ConfigError if there is no memory."""
         self.model = model
         self.api = model.api
+        self.shadow = sequences if model.slides else 0
+        if sequences + self.shadow > MOST_SEQUENCES:
+            raise ConfigError(
+                f"backbone.model {model.file}: {sequences + self.shadow} sequences are needed, llama.cpp holds "
+                f"{MOST_SEQUENCES}; lower backbone.reports_at_once"
+            )
         params = self.api.llama_context_default_params()
-        params.n_ctx, params.n_seq_max = cells, sequences
+        params.n_ctx, params.n_seq_max = cells, sequences + self.shadow
         params.n_batch, params.n_ubatch, params.n_outputs_max = BATCH, BATCH, OUTPUTS
         params.kv_unified, params.swa_full, params.no_perf = True, True, True
         params.flash_attn_type = -1 if flash is None else int(flash)
@@ -175,15 +190,25 @@ class Session:
             raise OutOfCells("the memory of keys and values is full")
         if code:
             raise RuntimeError(f"llama.cpp could not compute a batch of {at} tokens (code {code})")
+        for one in fed:
+            self.hold(one.sequence, one.position)
         return [self._logits(places) for places in wanted]
 
     def copy(self, source: int, target: int, length: int) -> None:
         """Lets `target` share the first positions of `source`."""
         self.api.llama_memory_seq_cp(self.memory, source, target, 0, length)
+        self.hold(target, 0)
+
+    def hold(self, sequence: int, position: int) -> None:
+        """Lets the sequence's shadow hold what stands from a position on."""
+        if self.shadow:
+            self.api.llama_memory_seq_cp(self.memory, sequence, sequence + self.shadow, position, -1)
 
     def cut(self, sequence: int, length: int) -> None:
         """Forgets what stands at positions from `length` on."""
         self.api.llama_memory_seq_rm(self.memory, sequence, length, -1)
+        if self.shadow:
+            self.api.llama_memory_seq_rm(self.memory, sequence + self.shadow, length, -1)
 
     def clear(self) -> None:
         """Forgets everything."""
@@ -211,12 +236,23 @@ class Session:
         return found
 
 
-def _quiet(found: Any) -> None:
-    """Switches the library's log off; the callback must outlive every call."""
+def quiet(setter: Any) -> None:
+    """Switches a log of the library off, by the function that sets it; the callback must outlive every call."""
     global _silence
     if _silence is None:
-        _silence = found.llama_log_callback(lambda *_: None)
-    found.llama_log_set(_silence, ctypes.c_void_p(0))
+        _silence = api().llama_log_callback(lambda *_: None)
+    setter(_silence, ctypes.c_void_p(0))
+
+
+@contextmanager
+def log_into(said: list[str], setter: Any) -> Iterator[None]:
+    """Collects what the library says meanwhile; switches the log off afterwards."""
+    heard = api().llama_log_callback(lambda _, text, __: said.append(text.decode("utf-8", errors="replace")))
+    setter(heard, ctypes.c_void_p(0))
+    try:
+        yield
+    finally:
+        quiet(setter)
 
 
 _silence: Any = None

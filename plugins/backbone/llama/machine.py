@@ -24,32 +24,77 @@ _PER_PARAMETER = {"Q2": 0.42, "Q3": 0.5, "Q4": 0.62, "Q5": 0.72, "Q6": 0.83, "Q8
 _PACKED = re.compile(r"(?<![A-Za-z])(BF16|F16|Q[2-8])(?![0-9])", re.IGNORECASE)
 _PROMPT, _ANSWER = 3000, 300
 """Tokens of a question and an answer that the expectation is told for."""
+_PROJECTOR = "clip"
+"""The architecture that projector files name."""
+_OUTPUTS = ("mm.", "resampler.", "adapter.")
+"""Beginnings of the names of the tensors behind the vision tower; the last of them gives the model's width."""
 _PRODUCTS, _READING = 0.7, 0.25
 """Shares of the rates of plain matrix products and of plain reading that packed weights reach, for prompts and for
 answers: fitted on one model (SmolLM2-135M, Q4_1, one thread), so an order of magnitude for others."""
 
 
-def lacks(model: str) -> tuple[str, ...]:
-    """What has to be installed or fetched before a file runs here, a line each. Raises ConfigError for no GGUF file."""
+def lacks(model: str, projector: str | None = None) -> tuple[str, ...]:
+    """What has to be installed, fetched or renamed before the files run here, a line each.
+
+    Raises ConfigError for a file that is no GGUF file.
+    """
     lines = (
         [] if library.installed() else [f"backbone: the package llama-cpp-python is not installed: {library.REMEDY}"]
     )
-    try:
-        file = hf_gguf.file_of(model)
-    except (MissingTool, ConfigError) as fault:
-        return (*lines, f"backbone: {fault}")
-    header.read(file)
+    found = {}
+    for field, name in (("model", model), ("projector", projector)):
+        if name is None:
+            continue
+        try:
+            file = hf_gguf.file_of(name, field)
+        except (MissingTool, ConfigError) as fault:
+            lines.append(f"backbone: {fault}")
+        else:
+            found[field] = header.read(file)
+    if "projector" in found and (wrong := _unfit(found.get("model"), found["projector"])):
+        lines.append(f"backbone.projector {projector}: {wrong}")
     return tuple(lines)
 
 
-def weights_gb(model: str, window: int, reports: int) -> float | None:
-    """Memory of the packed weights and of the keys and values, decimal GB; None if unknown."""
+def _unfit(model: header.Header | None, projector: header.Header) -> str:
+    """Why a file cannot be the projector of a model; "" where nothing in the files' beginnings says so."""
+    remedy = "name the mmproj file that was published with the model"
+    if projector.architecture != _PROJECTOR:
+        return f"is a model of kind {projector.architecture!r}, no projector (kind {_PROJECTOR!r}); {remedy}"
+    if projector.told.get("clip.has_vision_encoder") is False:
+        return f"knows sound and no pictures; {remedy}"
+    width = model.number("embedding_length") if model else 0
+    last = [shape for name, shape in projector.shapes.items() if name.startswith(_OUTPUTS) and len(shape) > 1]
+    if width and last and not any(width in shape for shape in last):
+        widths = sorted({size for shape in last for size in shape})
+        return f"none of its widths {widths} is that of the model's vectors, {width}; {remedy}"
+    return ""
+
+
+def pictures(model: str, projector: str | None) -> tuple[str, ...]:
+    """What becomes of diagrams, a line; nothing where a model reads text only."""
+    if projector is not None:
+        return (f"backbone: diagrams are shown by {Path(projector).name}; the seconds that pictures take are not told",)
+    found = _header(model)
+    if found is None:
+        return ()
+    beside = sorted(one.name for one in hf_gguf.file_of(model).parent.glob("*mmproj*.gguf"))
+    if not beside and "vl" not in found.architecture:
+        return ()
+    which = f"; {beside[0]} lies beside it" if beside else ""
+    return (f"backbone: diagrams are left out: backbone.projector names no mmproj file of {Path(model).name}{which}",)
+
+
+def weights_gb(model: str, projector: str | None, window: int, reports: int) -> float | None:
+    """Memory of the packed weights, a projector that is here, keys and values, decimal GB; None if unknown."""
     found = _header(model)
     if found is None:
         name = Path(model).name
         packed, billions = _PACKED.search(name), hf_machine.billions_in(name)
         return billions * _PER_PARAMETER.get(packed[1].upper(), 0.62) if packed and billions else None
-    return (found.size + found.cell_bytes * cells(_window(found, window), reports)) / 1e9
+    shown = _header(projector, "projector") if projector else None
+    more = shown.size if shown else 0
+    return (found.size + more + found.cell_bytes * cells(_window(found, window), reports)) / 1e9
 
 
 def expectation(model: str, window: int, reports: int, rows: int, gpu_layers: int) -> tuple[str, ...]:
@@ -75,9 +120,9 @@ def expectation(model: str, window: int, reports: int, rows: int, gpu_layers: in
     return tuple(lines)
 
 
-def _header(model: str) -> header.Header | None:
+def _header(name: str, field: str = "model") -> header.Header | None:
     try:
-        return header.read(hf_gguf.file_of(model))
+        return header.read(hf_gguf.file_of(name, field))
     except (MissingTool, ConfigError):
         return None
 

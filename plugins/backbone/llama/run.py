@@ -12,8 +12,10 @@ from plugins.backbone.engine.loop import Engine
 from plugins.backbone.hf_load import Loaded
 from plugins.backbone.hf_prompt import Prompter, TextOnly
 from plugins.backbone.hf_run import RunningModel
-from plugins.backbone.llama.library import Model
-from plugins.backbone.llama.rows import LlamaRows
+from plugins.backbone.llama.library import Model, Session
+from plugins.backbone.llama.pictures import GgufPrompts
+from plugins.backbone.llama.projector import MARKER, Projector
+from plugins.backbone.llama.rows import LlamaRows, cells, sequences
 from plugins.backbone.llama.words import GgufWords, compiler
 from sgcad_core.errors import ConfigError
 
@@ -27,6 +29,8 @@ class Fields:
     threads: int | None
     gpu_layers: int
     flash: bool | None
+    projector: str | None
+    pictures_first: bool
 
 
 _RUNNING: WeakValueDictionary[str, RunningModel] = WeakValueDictionary()
@@ -51,7 +55,19 @@ def start(name: str, fields: Fields) -> RunningModel:
     eos = model.ends()
     if not eos:
         raise ConfigError(f"backbone.model {name}: the file names no token that ends an answer; use another file")
-    rows = LlamaRows.of(model, fields.window, fields.reports_at_once, fields.threads, fields.flash)
-    prompter = Prompter(Loaded(None, words, model.template, None), TextOnly())
+    window, reports = min(fields.window, model.trained), fields.reports_at_once
+    projector = _projector(model, fields)
+    session = Session(model, cells(window, reports), sequences(reports), fields.threads, fields.flash)
+    rows = LlamaRows.of(session, window, reports, projector)
+    marker = MARKER if projector else None
+    words_of = Prompter(Loaded(None, words, model.template, None), TextOnly(), fields.pictures_first, marker)
+    prompter = GgufPrompts(words_of, projector) if projector else words_of
     engine = Engine(rows, fields.reports_at_once)
     return RunningModel(engine, prompter, compiler(words, eos), frozenset(eos), name)
+
+
+def _projector(model: Model, fields: Fields) -> Projector | None:
+    if fields.projector is None:
+        return None
+    file = hf_gguf.file_of(fields.projector, "projector")
+    return Projector(model, file, fields.gpu_layers, fields.threads, fields.flash)

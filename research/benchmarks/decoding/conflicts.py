@@ -1,10 +1,10 @@
 """What each decoder of the study `decoders` makes of the recorded reports: fields right, conflicts, and who won.
 
-The embedded model answers road and crash once (no refinement); its crash is compared with the one written by hand:
+The study's model answers road and crash once (no refinement); its crash is compared with the one written by hand:
 kinds and maneuvers of the actors, and the first contact. The gate's row says at how many tokens with a choice the row
 without the report was needed.
 
-    python -m research.benchmarks.decoding.conflicts [--arms grd cad ...] [--reports 12]
+    python -m research.benchmarks.decoding.conflicts [--study decoders_smollm2] [--arms grd cad ...] [--reports 12]
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def reports(count: int) -> Iterator[tuple[str, BehaviorSpec]]:
 
 
 def answered(backbone: Backbone, decoder: Decoder, narrative: str, tally: Tally) -> BehaviorSpec:
-    """The embedded model's crash on its own road. Raises InvalidOutput, Refused."""
+    """The model's crash on its own road. Raises InvalidOutput, Refused."""
     context = Context.of(CrashReport(case="c", narrative=narrative))
     road = backbone.generate(
         context, Query(task=load_prompt("mini_road"), answer_schema=answer_schema(RoadLayout)), decoder
@@ -112,12 +112,12 @@ def compared(said: BehaviorSpec | None, told: BehaviorSpec) -> tuple[int, int]:
     return sum(a == b for a, b in pairs), len(pairs)
 
 
-def tallied(arm: str, count: int) -> tuple[Tally, Decoder]:
-    """One arm over the reports."""
-    config = configs.build(load_config(f"decoders/{arm}").raw, arm, arm)
+def tallied(study: str, arm: str, count: int) -> tuple[Tally, Decoder]:
+    """One arm of a study over the reports."""
+    config = configs.build(load_config(f"{study}/{arm}").raw, arm, arm)
     backbone, decoder = config.backbone, config.decoder
     if backbone is None or decoder is None:
-        raise ConfigError(f"decoders/{arm}: asks no model; name arms of configs/studies/decoders.yaml that do")
+        raise ConfigError(f"{study}/{arm}: asks no model; name arms of configs/studies/{study}.yaml that do")
     if isinstance(decoder, Gated):
         decoder = CountedGate(**decoder.model_dump())
     tally = Tally()
@@ -136,6 +136,7 @@ def tallied(arm: str, count: int) -> tuple[Tally, Decoder]:
 def main(argv: Sequence[str] | None = None) -> int:
     """Print the table in Markdown."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n", maxsplit=1)[0])
+    parser.add_argument("--study", default="decoders", help="a study of configs/studies with these arms")
     parser.add_argument("--arms", nargs="*", default=ARMS)
     parser.add_argument("--reports", type=int, default=12)
     options = parser.parse_args(argv)
@@ -144,7 +145,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     print("|---|---|---|---|---|---|---|---|---|")  # noqa: T201 - a command prints
     for arm in options.arms:
-        tally, decoder = tallied(arm, options.reports)
+        tally, decoder = tallied(options.study, arm, options.reports)
         won, n = tally.conflicts, sum(tally.conflicts.values())
         cells = [arm, f"{tally.right} of {tally.asked}", tally.tokens, n, won["evidence"], won["prior"], won["neither"],
                  tally.failed, f"{tally.cpu_s:.0f}"]  # fmt: skip

@@ -1,6 +1,7 @@
 """How fast is context-aware decoding? One table in one run, ratios against plain greedy on the same loop.
 
     python -m research.benchmarks.decoding.decode [--size 15m 200m | 7b] [--rounds 3] [--out docs/results-decoding.md]
+    python -m research.benchmarks.decoding.decode --size 200m --turns 7 --threads 1 --clock process   # two ratios alone
 
 Weights are random, shapes are real; a teacher policy makes every arm pay for its scoring and then write the
 same answer, so arms differ in cost alone. Needs torch, transformers and numpy; rows that need more say "not
@@ -21,6 +22,7 @@ from plugins.backbone.engine.check import reference
 from plugins.backbone.engine.records import Answer
 from research.benchmarks.decoding import decode_setup as setup
 from research.benchmarks.decoding import decode_table as table
+from research.benchmarks.decoding.costs import in_turn
 from research.benchmarks.decoding.decode_bench import (
     ALPHA,
     REPAIR,
@@ -159,6 +161,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     known.add_argument(
         "--clock", choices=("wall", "process"), default="wall", help="process: seconds of CPU, for a busy machine"
     )
+    known.add_argument("--turns", type=int, help="only greedy, CAD and grammar, in turn that many times")
     told = known.parse_args(arguments)
     if told.threads:
         torch.set_num_threads(told.threads)
@@ -168,6 +171,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     text = [table.heading(device)]
     for name in sizes:
         bench = Bench(setup.SIZES[name], device, told.rounds)
+        if told.turns:
+            text.append(in_turn.table(bench, told.turns))
+            continue
         parts = [one_report(bench), many_reports(bench, told.reports), attempts(bench)]
         text.append(table.section(bench, parts, table.grammar_cost(bench), table.floors(bench)))
         sys.stderr.write(f"{name} done\n")

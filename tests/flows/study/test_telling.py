@@ -35,10 +35,10 @@ def test_orchestration_is_told_a_case_and_as_a_share(made):
 @pytest.mark.parametrize(
     ("named", "told"),
     [
-        ("mini_no_contrast.yaml", "mini_no_contrast: fine; extends mini.yaml; seed 42"),
+        ("mini_no_contrast.yaml", "mini_no_contrast: valid; extends mini.yaml; seed 42"),
         ("paper/llama90b_sg_cadvlm", "extends paper/qwen72b_sg_cadvlm.yaml"),
         ("alpha_llama90b", "Llama-3.2-90B; 7 arms; extends alpha_qwen72b.yaml"),
-        ("rag_qwen72b/no_rag", "rag_qwen72b-no_rag: fine; extends paper/qwen72b_sg_cadvlm.yaml"),
+        ("rag_qwen72b/no_rag", "rag_qwen72b-no_rag: valid; extends paper/qwen72b_sg_cadvlm.yaml"),
     ],
 )
 def test_check_tells_what_a_config_or_study_extends(named, told):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -229,3 +231,17 @@ def test_a_dead_end_names_the_field() -> None:
     with pytest.raises(DoesNotFit, match="no token may follow") as caught:
         engine_of(model, family).generate(Request(with_, without, Cad(), maker.grammar(lanes), 0, 60, frozenset({256})))
     assert caught.value.path == "lanes"
+
+
+def test_an_interpreter_that_ends_has_ended_the_loop_first() -> None:
+    told = """
+import atexit
+atexit.register(lambda: print("alive" if engine.thread.is_alive() else "ended"))  # runs behind the loop's own
+from plugins.backbone.engine.loop import engine_of
+from tests.plugins.backbone import test_loop, tiny
+model, family = tiny.build("text_only")
+engine = engine_of(model, family)
+print(len(engine.generate(test_loop.request(family, 1)).ids))
+"""
+    done = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout.split()) == (0, ["12", "ended"]), done.stderr

@@ -48,3 +48,16 @@ def test_without_llguidance_and_pydantic_the_grammar_rows_say_not_measured() -> 
     assert "| cad with grammar and jump-forward | not measured |" in text
     assert "Grammar: not measured" in text
     assert "cad, both rows in one batch" in text
+
+
+@pytest.mark.slow
+def test_arms_in_turn_stand_beside_greedy_of_the_same_turn() -> None:
+    told = ["--size", "tiny", "--turns", "2", "--threads", "1", "--clock", "process"]
+    code = f"from research.benchmarks.decoding.decode import main\nmain({told})"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, timeout=400)
+    assert done.returncode == 0, done.stderr
+    cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in done.stdout.splitlines() if "|" in line]
+    rows = {row[0]: row[1:] for row in cells[2:]}
+    assert rows["greedy"][1:4] == ["1.000"] * 3
+    assert 0.2 < float(rows["cad, both rows in one batch"][1]) < 4
+    assert float(rows["cad with grammar and jump-forward"][4]) < 0.6, "model calls a token"

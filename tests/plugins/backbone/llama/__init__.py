@@ -1,0 +1,1 @@
+"""GGUF models and their files for pictures."""

@@ -1,0 +1,1 @@
+"""What decoding costs: arms in turn, and contrast through a real server."""
