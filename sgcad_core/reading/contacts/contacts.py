@@ -77,6 +77,8 @@ def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
             told = [mention, *listed(mention, text[m.end() :]), *behind_things(mention, text[m.end() :])]
             told += [replace(mention, actor=v) for v in _subjects(statement, text[: m.start()], m, starts)
                      if v != mention.actor and lone_thing(text[m.end() :])]  # fmt: skip
+            told += [replace(mention, other=v) for v in _subjects(statement, text[: m.start()], m, starts)
+                     if v not in (mention.actor, mention.other) and mention.passive]  # fmt: skip
             found += [replace(b, at=_place(text, b.other, m.start())) for b in told]
     nouns = tuple(touches(statement, text))
     found += [replace(b, at=b.at or _place(text, b.other)) for b in nouns]
@@ -120,7 +122,8 @@ def _contact_mention(
     subjects = _subjects(statement, before, m, starts)
     if not subjects:
         return None
-    if len(subjects) > 1 and not lone_thing(scope):
+    struck_by = passive and rule("contact_words.by").search(scope)
+    if len(subjects) > 1 and not lone_thing(scope) and not struck_by:
         return mutual(statement, subjects, m.group(), before, scope)
     actor, actor_area = subjects[0], subject_area(before, subjects[0])
     if actor not in MENTION.findall(before):
