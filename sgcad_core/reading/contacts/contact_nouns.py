@@ -160,11 +160,13 @@ def is_noun(before: str, word: str, behind: str) -> bool:
 
 def subject_area(before: str, subject: str) -> Zone | None:
     """Area in "the front of V1 ..." if the nearest mention of the subject has one."""
+    if own := rule("contact.own_area").search(before):
+        return area_of(own["area"])
     named = rule("contact.subject_area").within(vehicle=r"(?P<vehicle>V\d+)")  # one pattern for all vehicles
     found = [m for m in named.finditer(before) if m["vehicle"].upper() == subject.upper()]
     if found and found[-1]["area"] and not rule("contact.place_before").search(before[: found[-1].start("area")]):
         return area_of(found[-1]["area"])
-    own = rule("contact.own_area").search(before) or rule("contact.with_before").search(before)
+    own = rule("contact.with_before").search(before)
     return area_of(own["area"]) if own else None
 
 

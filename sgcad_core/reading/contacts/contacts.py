@@ -31,6 +31,7 @@ from sgcad_core.reading.contacts.contact_things import (
     any_object,
     behind_things,
     listed,
+    listed_things,
     lone_thing,
     off_the_ground,
     thing_acts,
@@ -74,7 +75,8 @@ def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
             continue
         mention = _contact_mention(statement, text, m, starts, roster)
         if mention:
-            told = [mention, *listed(mention, text[m.end() :]), *behind_things(mention, text[m.end() :])]
+            behind = text[m.end() :]
+            told = [mention, *listed(mention, behind), *listed_things(mention, behind), *behind_things(mention, behind)]
             told += [replace(mention, actor=v) for v in _subjects(statement, text[: m.start()], m, starts)
                      if v != mention.actor and lone_thing(text[m.end() :])]  # fmt: skip
             told += [replace(mention, other=v) for v in _subjects(statement, text[: m.start()], m, starts)
@@ -131,11 +133,11 @@ def _contact_mention(
     other = None if passive or not roster.counted else roster.other(actor)
     if other and (part := door_of(actor, before, scope)):
         actor, actor_area = other, area_of(part)
-    return (
-        _passive(statement, actor, actor_area, scope, m.group(), roster)
-        if passive
-        else _active(statement, actor, actor_area, scope, m.group(), roster)
-    )
+    if passive:
+        return _passive(statement, actor, actor_area, scope, m.group(), roster)
+    told = _active(statement, actor, actor_area, scope, m.group(), roster)
+    wheel = rule("contact_words.wheel_end").search(before) if told and told.other not in roster.ids else None
+    return replace(told, actor_area=area_of(wheel["end"] or wheel["first"])) if told and wheel else told
 
 
 def _meant_by_pronoun(statement: Statement, actor: str, scope: str, roster: Roster) -> str:
@@ -161,6 +163,7 @@ def _subjects(
 ) -> tuple[str, ...]:
     """The vehicles that are the subject of this verb."""
     caused = rule("contact_words.caused").search(before)
+    caused = caused or rule("contact_words.side_acts").search(before)
     if caused:
         return (caused["v"],)
     fitting = [s for at, _, s in starts if at < m.start()]
@@ -182,7 +185,8 @@ def _active(
 ) -> ContactMention | None:
     pair = paired_areas(scope)
     scope = _clause(rule("contact_words.aside").sub(" ", scope))
-    if (first := rule("contact_words.own_first").match(scope)) and MENTION.findall(scope)[:1] != [actor]:
+    first = rule("contact_words.own_first").match(scope)
+    if first and (first["own"] == actor if first["own"] else MENTION.findall(scope)[:1] != [actor]):
         area, scope = area_of(first["area"]) or area, " " + scope[first.end() :]
     own = rule("contact_words.with_its").search(scope)
     if own and rule("contact.made_contact").match(verb) and rule("contact.touched").match(scope):
@@ -194,6 +198,8 @@ def _active(
         return None
     if (named := rule("contact.with_area_of").search(scope)) and named["v"] != other and scope[: named.start()].strip():
         actor, area = named["v"], area_of(named["area"])
+    if other not in roster.ids and (hurt := rule("contact_words.own_on_thing").search(scope)):
+        area = area or area_of(hurt["plane"] or hurt["area"])
     if rule("contact.rear_end").match(verb) or rule("contact.from_behind").search(scope):
         area, other_area = area or "front", "back"
     if rule("contact.backs_into").match(verb):
