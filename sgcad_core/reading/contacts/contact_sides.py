@@ -126,13 +126,24 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
             bent
             and mine
             and mine.count("/") == 1
-            and yours in ("front", None)
+            and (yours in ("front", None) or (turn == 0 and yours in OPPOSITE_HAND))
             and inferred.maneuvers[me] not in ("stopped", "parked")
         )
+        flank = flank or _beside(mine, yours, turn)
         areas[me] = mine.split("/")[1] if flank and mine else end_of(mine)  # type: ignore[assignment]
     if set(areas.values()) == {"back"} and not any(inferred.maneuvers[v] == "backing" for v in pair):
         areas = {v: _flank_of(zones[v]) or areas[v] for v in pair}
     return areas[mention.actor], areas[mention.other]
+
+
+def _beside(mine: Zone | None, yours: Zone | None, turn: float) -> bool:
+    """Whether a corner touches with its flank whatever the maneuver: corners of opposite hands side by side, or a rear
+    corner that an oncoming front finds."""
+    hand, other = _flank_of(mine), _flank_of(yours)
+    rear = end_of(mine) == "back"
+    if turn == 180:
+        return rear and hand is not None and end_of(yours) == "front"
+    return turn == 0 and hand is not None and other == OPPOSITE_HAND[hand] and end_of(mine) == end_of(yours)
 
 
 def _flank_of(zone: Zone | None) -> Area | None:

@@ -78,7 +78,7 @@ def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
             behind = text[m.end() :]
             told = [mention, *listed(mention, behind), *listed_things(mention, behind), *behind_things(mention, behind)]
             told += [replace(mention, actor=v) for v in _subjects(statement, text[: m.start()], m, starts)
-                     if v != mention.actor and lone_thing(text[m.end() :])]  # fmt: skip
+                     if v not in (mention.actor, mention.other) and not mention.passive and not mention.mutual]  # fmt: skip
             told += [replace(mention, other=v) for v in _subjects(statement, text[: m.start()], m, starts)
                      if v not in (mention.actor, mention.other) and mention.passive]  # fmt: skip
             found += [replace(b, at=_place(text, b.other, m.start())) for b in told]
@@ -125,7 +125,9 @@ def _contact_mention(
     if not subjects:
         return None
     struck_by = passive and rule("contact_words.by").search(scope)
-    if len(subjects) > 1 and not lone_thing(scope) and not struck_by:
+    third = rule("contact_words.active_object").match(scope)
+    alone = lone_thing(scope) or struck_by or (third and third["v"] not in subjects)
+    if len(subjects) > 1 and not alone:
         return mutual(statement, subjects, m.group(), before, scope)
     actor, actor_area = subjects[0], subject_area(before, subjects[0])
     if actor not in MENTION.findall(before):
@@ -136,8 +138,10 @@ def _contact_mention(
     if passive:
         return _passive(statement, actor, actor_area, scope, m.group(), roster)
     told = _active(statement, actor, actor_area, scope, m.group(), roster)
-    wheel = rule("contact_words.wheel_end").search(before) if told and told.other not in roster.ids else None
-    return replace(told, actor_area=area_of(wheel["end"] or wheel["first"])) if told and wheel else told
+    if not told or told.other in roster.ids:
+        return told
+    wheel = rule("contact_words.wheel_end").search(before) or rule("contact_words.wheel_end").search(scope)
+    return replace(told, actor_area=area_of(next(filter(None, wheel.groups())))) if wheel else told
 
 
 def _meant_by_pronoun(statement: Statement, actor: str, scope: str, roster: Roster) -> str:

@@ -132,7 +132,8 @@ def _once(things: Sequence[ImpactRead]) -> Iterator[ImpactRead]:
     for read in things:
         key = read.impact.actor, read.impact.other
         number = read.source.number
-        if key not in last or number - last[key] == 1:
+        further = number == last.get(key) and rule("course_impacts.one_more").search(read.source.words)
+        if key not in last or number - last[key] == 1 or further:
             yield read
         last[key] = number
 
