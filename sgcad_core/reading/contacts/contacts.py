@@ -7,7 +7,7 @@ subject, voice and object. Interviews come last: they exchange numbers. Infers n
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from sgcad_core.reading.actors.people_objects import with_people
@@ -77,10 +77,7 @@ def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
         if mention:
             behind = text[m.end() :]
             told = [mention, *listed(mention, behind), *listed_things(mention, behind), *behind_things(mention, behind)]
-            told += [replace(mention, actor=v) for v in _subjects(statement, text[: m.start()], m, starts)
-                     if v not in (mention.actor, mention.other) and not mention.passive and not mention.mutual]  # fmt: skip
-            told += [replace(mention, other=v) for v in _subjects(statement, text[: m.start()], m, starts)
-                     if v not in (mention.actor, mention.other) and mention.passive]  # fmt: skip
+            told += [replace(mention, **{side: v}) for side, v in _also(mention, _subjects(statement, text[: m.start()], m, starts))]
             found += [replace(b, at=_place(text, b.other, m.start())) for b in told]
     nouns = tuple(touches(statement, text))
     found += [replace(b, at=b.at or _place(text, b.other)) for b in nouns]
@@ -90,6 +87,13 @@ def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
     found += [b for b in without_agent(statement, text, roster) if frozenset((b.actor, b.other)) not in told_by_verbs]
     found += [b for b in together(statement, text) if frozenset((b.actor, b.other)) not in told_by_verbs]
     return [b for b in found if b.actor in roster.ids and b.actor != b.other]
+
+
+def _also(mention: ContactMention, subjects: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    """The further subjects of a verb, each a striker as well, or struck as well."""
+    side, first = ("other", mention.other) if mention.passive else ("actor", mention.actor)
+    if first in subjects and not mention.mutual:
+        yield from ((side, v) for v in subjects if v not in (mention.actor, mention.other))
 
 
 def _place(text: str, word: str, verb: int = 0) -> int:
@@ -122,6 +126,8 @@ def _contact_mention(
     if moves and not passive and (hit := _hit_by_thing(statement, moves, scope, m.group(), roster)):
         return hit
     subjects = _subjects(statement, before, m, starts)
+    if not subjects and len(roster.ids) == 1 and rule("contact.own_area").search(before):
+        subjects = roster.ids  # "a deer came from the left where the front struck it"
     if not subjects:
         return None
     struck_by = passive and rule("contact_words.by").search(scope)
@@ -141,7 +147,7 @@ def _contact_mention(
     if not told or told.other in roster.ids:
         return told
     wheel = rule("contact_words.wheel_end").search(before) or rule("contact_words.wheel_end").search(scope)
-    return replace(told, actor_area=area_of(next(filter(None, wheel.groups())))) if wheel else told
+    return replace(told, actor_area="front") if wheel else told
 
 
 def _meant_by_pronoun(statement: Statement, actor: str, scope: str, roster: Roster) -> str:

@@ -22,6 +22,8 @@ from sgcad_core.reading.text.sentence_roles import Role
 from sgcad_core.records.course import ImpactTold
 from sgcad_core.records.specs import Area
 
+_SLACK = 12
+"""Characters by which a word may stand earlier in a sentence's one form than in the sentence."""
 _RETOLD: tuple[Role, ...] = ("interview", "injury")
 
 
@@ -63,8 +65,10 @@ def things_struck(
 
 def _place(read: ImpactRead, texts: Mapping[int, str]) -> tuple[int, int]:
     """Where an impact is told: the number of its sentence, and the place of the struck one's word in it."""
-    number, other = read.source.number, read.impact.other
-    return number, max(texts.get(number, "").find(other.lower()), 0)
+    number, other = read.source.number, read.impact.other.lower()
+    text = texts.get(number, "")
+    at = text.find(other, max(read.at, 0))
+    return number, at if at >= 0 else max(text.find(other), 0)
 
 
 def _first_places(contact_mentions: Sequence[ContactMention], roster: Roster) -> list[tuple[int, int]]:
@@ -150,7 +154,7 @@ def _things(segment: Segment) -> Iterator[ImpactRead]:
         for thing in _listed(segment.text, m):
             end = thing.end()
             if thing["thing"] not in GROUND:
-                yield from (_hit(segment, m, thing["thing"], vehicle) for vehicle in segment.subjects)
+                yield from (_hit(segment, m, thing, vehicle) for vehicle in segment.subjects)
 
 
 def _listed(text: str, first: re.Match[str]) -> Iterator[re.Match[str]]:
@@ -166,12 +170,13 @@ def _undone(text: str, m: re.Match[str]) -> bool:
     return bool(rule("course_evasion.to_avoid").search(before) or rule("course_impacts.nearly").search(before))
 
 
-def _hit(segment: Segment, m: re.Match[str], thing: str, vehicle: str) -> ImpactRead:
+def _hit(segment: Segment, m: re.Match[str], thing: re.Match[str], vehicle: str) -> ImpactRead:
     own = rule("contact_words.with_its").search(segment.text[m.end() : m.end() + 60])
     own = own or rule("course_impacts.damaging").match(segment.text, m.end())
     area = end_of(area_of(own["area"])) if own else None
-    impact = ImpactTold(vehicle, _word(thing), area)
-    return ImpactRead(impact, Source(segment.number, m[0], "course_impacts.object"))
+    impact = ImpactTold(vehicle, _word(thing["thing"]), area)
+    at = segment.at + thing.start("thing") - _SLACK
+    return ImpactRead(impact, Source(segment.number, m[0], "course_impacts.object"), at)
 
 
 def _word(thing: str) -> str:
