@@ -58,6 +58,8 @@ def _join(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) ->
         area_a, area_b = _brushed(inferred, mention, area_a, area_b)
     if area_a is None and area_b is None and is_sideswipe(mention):
         area_a, area_b = _sideswiped(inferred, a, b)
+    if is_sideswipe(mention) and (area_a is None) != (area_b is None):
+        area_a, area_b = _flanks(inferred, a, b, area_a, area_b)
     if mention.mutual and area_a is None and area_b is None and _less_of_a_striker(inferred, a, b):
         a, b = b, a
     if area_a is None and area_b is None and (caught := _caught_up(crash, a, b)):
@@ -110,6 +112,19 @@ def _sideswiped(inferred: CrashInferred, a: str, b: str) -> tuple[Area, Area]:
         return "left", "left"
     a_goes_left = inferred.maneuvers[a] == "lane_change_left" or inferred.maneuvers[b] == "lane_change_right"
     return ("left", "right") if a_goes_left else ("right", "left")
+
+
+def _flanks(
+    inferred: CrashInferred, a: str, b: str, area_a: Area | None, area_b: Area | None
+) -> tuple[Area | None, Area | None]:
+    """Both flanks of a sideswipe that tells one of them, where the vehicles touch along each other."""
+    turn = between(inferred.headings.get(a, "N"), inferred.headings.get(b, "N"))
+    at_contact = (turn + TURN_DEG.get(inferred.maneuvers[b], 0.0) - TURN_DEG.get(inferred.maneuvers[a], 0.0)) % 360
+    told = area_a or area_b
+    if told not in OPPOSITE_HAND or min(apart(at_contact, 0), apart(at_contact, 180)) > 45:
+        return area_a, area_b
+    facing = _flank_facing(told, at_contact)  # type: ignore[arg-type]
+    return area_a or facing, area_b or facing
 
 
 def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) -> tuple[Area | None, Area | None]:

@@ -13,7 +13,7 @@ from dataclasses import replace
 from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.contacts.contact_records import GROUND, ContactMention
 from sgcad_core.reading.contacts.crash_course import UNREAD, CoursesRead, ImpactRead
-from sgcad_core.reading.inference.inference_state import end_of
+from sgcad_core.reading.inference.inference_state import end_of, side_met
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
 from sgcad_core.reading.motion.motion_record import Source
@@ -92,7 +92,7 @@ def _of_mention(mention: ContactMention, roster: Roster) -> ImpactRead | None:
     person = any(user.search(mention.other) for user in of_role("road_user"))
     if mention.other in roster.ids or person or mention.other in GROUND or mention.role in _RETOLD:
         return None
-    area = end_of(mention.actor_area)
+    area = side_met(mention.actor_area)
     impact = ImpactTold(mention.actor, _word(mention.other), area)
     return ImpactRead(impact, mention.source)
 
@@ -173,7 +173,7 @@ def _undone(text: str, m: re.Match[str]) -> bool:
 def _hit(segment: Segment, m: re.Match[str], thing: re.Match[str], vehicle: str) -> ImpactRead:
     own = rule("contact_words.with_its").search(segment.text[m.end() : m.end() + 60])
     own = own or rule("course_impacts.damaging").match(segment.text, m.end())
-    area = end_of(area_of(own["area"])) if own else None
+    area = side_met(area_of(own["area"])) if own else None
     impact = ImpactTold(vehicle, _word(thing["thing"]), area)
     at = segment.at + thing.start("thing") - _SLACK
     return ImpactRead(impact, Source(segment.number, m[0], "course_impacts.object"), at)
