@@ -13,7 +13,7 @@ from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.text.area_phrases import Zone, area_if_told, area_of
+from sgcad_core.reading.text.area_phrases import Zone, area_if_told, area_of, plain
 
 _PUSHES = (("v1", "v2", "a2"), ("v3", "v4", "a4"), ("v5", "v6", "a6"))
 """Groups of a pushed vehicle, the vehicle it is pushed into, and the area."""
@@ -212,3 +212,32 @@ def mutual(statement: Statement, subjects: tuple[str, ...], verb: str, before: s
     return ContactMention(
         subjects[0], subjects[1], first, second, statement.number, statement.role, False, verb.lower(), True
     )
+
+
+def area_against_area(mention: ContactMention, scope: str) -> ContactMention:
+    """The mention with the areas of "the left side of V1 against the right side of V2" behind its verb."""
+    met = rule("contact_words.against").search(scope)
+    if not met or {met["v1"], met["v2"]} != {mention.actor, mention.other}:
+        return mention
+    zones = {met["v1"]: area_if_told(met["a1"]), met["v2"]: area_if_told(met["a2"])}
+    return replace(mention, actor_area=zones[mention.actor], other_area=zones[mention.other])
+
+
+def clause(scope: str) -> str:
+    """Up to the end of the clause, but at least as far as the first vehicle behind the verb."""
+    first = MENTION.search(scope)
+    end = rule("contact_words.clause_end").search(scope, first.end() if first and first.start() < 70 else 0)
+    return scope[: end.start()] if end else scope
+
+
+def damaged(statement: Statement, roster: Roster) -> Zone | None:
+    """ "The left side of V2 was damaged when V1 contacted it": the area that the sentence begins with."""
+    found = rule("contact_words.damaged").match(plain(statement, roster))
+    return area_of(found["area"]) if found else None
+
+
+def area_behind(text: str) -> Zone | None:
+    """ "... in the left side", "... in the center of the rear bumper": the first phrase that names a side."""
+    near = rule("contact.area_ends").split(clause(text)[:80])[0]
+    areas = [area_of(m["area"]) for m in rule("contact.owned_area").finditer(near)]
+    return next(filter(None, areas), None) if rule("contact_words.on_the").search(near) else None

@@ -69,7 +69,7 @@ def thing_acts(before: str, roster: Roster) -> re.Match[str] | None:
     """The thing or animal that is the subject of a verb of touching."""
     if roster.counted:
         return rule("contact_words.thing_moves").search(before)
-    return rule("contact_words.thing_acts").search(before) or rule("contact_words.thing_enters").match(before)
+    return rule("contact_words.thing_acts").search(before) or rule("contact_words.thing_enters").search(before)
 
 
 def any_object(statement: Statement, scope: str, roster: Roster) -> str | None:

@@ -13,6 +13,10 @@ from dataclasses import replace
 from sgcad_core.reading.actors.people_objects import with_people
 from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.contacts.contact_nouns import (
+    area_against_area,
+    area_behind,
+    clause,
+    damaged,
     door_of,
     involved,
     is_noun,
@@ -77,7 +81,7 @@ def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
         if mention:
             behind = text[m.end() :]
             told = [mention, *listed(mention, behind), *listed_things(mention, behind), *behind_things(mention, behind)]
-            told += [replace(mention, **{side: v}) for side, v in _also(mention, _subjects(statement, text[: m.start()], m, starts))]
+            told += _also(mention, _subjects(statement, text[: m.start()], m, starts))
             found += [replace(b, at=_place(text, b.other, m.start())) for b in told]
     nouns = tuple(touches(statement, text))
     found += [replace(b, at=b.at or _place(text, b.other)) for b in nouns]
@@ -89,11 +93,11 @@ def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
     return [b for b in found if b.actor in roster.ids and b.actor != b.other]
 
 
-def _also(mention: ContactMention, subjects: tuple[str, ...]) -> Iterator[tuple[str, str]]:
-    """The further subjects of a verb, each a striker as well, or struck as well."""
-    side, first = ("other", mention.other) if mention.passive else ("actor", mention.actor)
-    if first in subjects and not mention.mutual:
-        yield from ((side, v) for v in subjects if v not in (mention.actor, mention.other))
+def _also(mention: ContactMention, subjects: tuple[str, ...]) -> Iterator[ContactMention]:
+    """The same contact of the verb's further subjects, each a striker as well, or struck as well."""
+    side = "other" if mention.passive else "actor"
+    if getattr(mention, side) in subjects and not mention.mutual:
+        yield from (replace(mention, **{side: v}) for v in subjects if v not in (mention.actor, mention.other))
 
 
 def _place(text: str, word: str, verb: int = 0) -> int:
@@ -161,6 +165,11 @@ def _hit_by_thing(
 ) -> ContactMention | None:
     """ "The gate closed and made contact with the front of V1"."""
     whom, area = _object(statement, "", scope, roster)
+    if whom not in roster.ids and rule("contact_words.own_front").match(scope):
+        whom, area = (
+            next(iter(MENTION.findall(thing.string)[-1:] or (roster.ids if len(roster.ids) == 1 else ())), None),
+            "front",
+        )
     if whom not in roster.ids or whom is None:
         return None
     return ContactMention(
@@ -194,7 +203,7 @@ def _active(
     statement: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
 ) -> ContactMention | None:
     pair = paired_areas(scope)
-    scope = _clause(rule("contact_words.aside").sub(" ", scope))
+    scope = clause(rule("contact_words.aside").sub(" ", scope))
     first = rule("contact_words.own_first").match(scope)
     if first and (first["own"] == actor if first["own"] else MENTION.findall(scope)[:1] != [actor]):
         area, scope = area_of(first["area"]) or area, " " + scope[first.end() :]
@@ -217,23 +226,7 @@ def _active(
     if pair and area is None:
         area, other_area = pair
     mention = ContactMention(actor, other, area, other_area, statement.number, statement.role, False, verb.lower())
-    return _area_against_area(mention, scope)
-
-
-def _area_against_area(mention: ContactMention, scope: str) -> ContactMention:
-    """The mention with the areas of "the left side of V1 against the right side of V2" behind its verb."""
-    met = rule("contact_words.against").search(scope)
-    if not met or {met["v1"], met["v2"]} != {mention.actor, mention.other}:
-        return mention
-    zones = {met["v1"]: area_if_told(met["a1"]), met["v2"]: area_if_told(met["a2"])}
-    return replace(mention, actor_area=zones[mention.actor], other_area=zones[mention.other])
-
-
-def _clause(scope: str) -> str:
-    """Up to the end of the clause, but at least as far as the first vehicle behind the verb."""
-    first = MENTION.search(scope)
-    end = rule("contact_words.clause_end").search(scope, first.end() if first and first.start() < 70 else 0)
-    return scope[: end.start()] if end else scope
+    return area_against_area(mention, scope)
 
 
 def _object(statement: Statement, actor: str, scope: str, roster: Roster) -> tuple[str | None, Zone | None]:
@@ -241,7 +234,7 @@ def _object(statement: Statement, actor: str, scope: str, roster: Roster) -> tup
     m = rule("contact_words.active_object").match(scope)
     thing = rule("contact_words.object").match(scope)
     if m and not (thing and thing.end() < m.start("v") and thing["object"].lower() != "trailer"):
-        area = area_if_told(m["area"]) or _area_behind(scope[m.end() :])
+        area = area_if_told(m["area"]) or area_behind(scope[m.end() :])
         return _not_itself(m["v"], actor, roster, statement), area
     towed = ("trailer", "parked") if len(roster.ids) > 1 else ("parked",)
     if thing and thing["object"].lower() not in towed:
@@ -252,13 +245,13 @@ def _object(statement: Statement, actor: str, scope: str, roster: Roster) -> tup
         or rule("contact.nothing").match(scope)
     ):
         only = rule("contact_words.the_area").match(scope)
-        return _the_other(statement, actor, roster), area_if_told(only["area"]) if only else _area_behind(
+        return _the_other(statement, actor, roster), area_if_told(only["area"]) if only else area_behind(
             scope
-        ) or _damaged(statement, roster)
+        ) or damaged(statement, roster)
     late = MENTION.search(scope)
     if late and late.group() != actor and late.start() < 60:
         named = rule("contact.area_of_vehicle").given(vehicle=late.group()).search(scope)
-        return late.group(), area_if_told(named["area"]) if named else _area_behind(scope[late.end() :])
+        return late.group(), area_if_told(named["area"]) if named else area_behind(scope[late.end() :])
     return any_object(statement, scope, roster), None
 
 
@@ -270,25 +263,12 @@ def _the_other(statement: Statement, actor: str, roster: Roster) -> str | None:
     return roster.other(actor) or next(named, subject or earlier)
 
 
-def _damaged(statement: Statement, roster: Roster) -> Zone | None:
-    """ "The left side of V2 was damaged when V1 contacted it": the area that the sentence begins with."""
-    found = rule("contact_words.damaged").match(plain(statement, roster))
-    return area_of(found["area"]) if found else None
-
-
 def _not_itself(named: str, actor: str, roster: Roster, statement: Statement) -> str | None:
     """The named vehicle, or another one where it would strike itself: the other of two, or the subject of the sentence
     before."""
     if named != actor:
         return named
     return roster.other(actor) if roster.counted else _the_other(statement, actor, roster)
-
-
-def _area_behind(text: str) -> Zone | None:
-    """ "... in the left side", "... in the center of the rear bumper": the first phrase that names a side."""
-    near = rule("contact.area_ends").split(_clause(text)[:80])[0]
-    areas = [area_of(m["area"]) for m in rule("contact.owned_area").finditer(near)]
-    return next(filter(None, areas), None) if rule("contact_words.on_the").search(near) else None
 
 
 def _passive(
@@ -314,6 +294,6 @@ def _passive(
     if other is None:
         return None
     area, other_area = struck_pair(scope, area, other_area)
-    area = area or (_area_behind(scope[by.end() :]) if by and not own else None)
+    area = area or (area_behind(scope[by.end() :]) if by and not own else None)
     other = _not_itself(other, actor, roster, statement) or other
     return ContactMention(other, actor, other_area, area, statement.number, statement.role, True, verb.lower())

@@ -76,7 +76,7 @@ def test_a_curb_on_the_way_to_the_first_contact_is_passed_over() -> None:
 
 @pytest.mark.parametrize("between", ["", "struck the curb with its right wheels. V1 then "])
 def test_a_curb_before_the_first_thing_may_be_read_or_not(between: str) -> None:
-    text = f"V1 was traveling north in lane one of a two-lane roadway. V1 left the road on the right and {between}struck a tree with its front."
+    text = f"V1 was northbound on a two-lane road. V1 left it on the right and {between}struck a tree with its front."
     events = [_event("V1", "curb", ("right", None)), _event("V1", "tree", ("front", None))]
     marks = _marks(_case(text=text, events=events, vehicles=[_vehicle("V1", "straight")]))
     assert marks["first_thing"]
