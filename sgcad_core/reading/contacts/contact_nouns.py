@@ -155,6 +155,8 @@ def is_noun(before: str, word: str, behind: str) -> bool:
     nouns = ("impact", "contact", "hit", "impacts", "contacts", "hits", "strike")
     if word.lower() not in nouns or rule("contact_words.caused").search(before):
         return False
+    if word.lower() == "hit" and rule("contact.own_area").search(before):
+        return False
     return bool(rule("contact.noun_before").search(before))
 
 

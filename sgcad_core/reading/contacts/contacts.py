@@ -46,6 +46,9 @@ from sgcad_core.reading.motion.clauses import Statement, subject_starts
 from sgcad_core.reading.text.area_phrases import Zone, area_by, area_if_told, area_of, plain
 from sgcad_core.reading.text.sentence_roles import HIT
 
+_NEAR = 80
+"""Characters behind a verb within which the side that struck a thing is told."""
+
 
 def contact_mentions(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
     """Every contact told, in order: the crash's own sentences first, other witnesses behind them."""
@@ -66,7 +69,7 @@ def contact_mentions(statements: Iterable[Statement], roster: Roster) -> tuple[C
 def _only_named(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
     """Contacts of a report that says only which vehicles collided."""
     found = (replace(b, mutual=True, summary=True) for t in statements for b in involved(t, plain(t, roster)))
-    return tuple(b for b in found if {b.actor, b.other} <= set(roster.ids) and b.actor != b.other)
+    return tuple(b for b in found if len({b.actor, b.other} & set(roster.ids)) == 2)
 
 
 def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
@@ -130,14 +133,13 @@ def _contact_mention(
     if moves and not passive and (hit := _hit_by_thing(statement, moves, scope, m.group(), roster)):
         return hit
     subjects = _subjects(statement, before, m, starts)
-    if not subjects and len(roster.ids) == 1 and rule("contact.own_area").search(before):
-        subjects = roster.ids  # "a deer came from the left where the front struck it"
+    alone = len(roster.ids) == 1 and rule("contact.own_area").search(before)
+    subjects = subjects or (roster.ids if alone else ())  # "a deer came from the left where the front struck it"
     if not subjects:
         return None
     struck_by = passive and rule("contact_words.by").search(scope)
     third = rule("contact_words.active_object").match(scope)
-    alone = lone_thing(scope) or struck_by or (third and third["v"] not in subjects)
-    if len(subjects) > 1 and not alone:
+    if len(subjects) > 1 and not (lone_thing(scope) or struck_by or (third and third["v"] not in subjects)):
         return mutual(statement, subjects, m.group(), before, scope)
     actor, actor_area = subjects[0], subject_area(before, subjects[0])
     if actor not in MENTION.findall(before):
@@ -182,7 +184,6 @@ def _subjects(
 ) -> tuple[str, ...]:
     """The vehicles that are the subject of this verb."""
     caused = rule("contact_words.caused").search(before)
-    caused = caused or rule("contact_words.side_acts").search(before)
     if caused:
         return (caused["v"],)
     fitting = [s for at, _, s in starts if at < m.start()]
@@ -202,7 +203,7 @@ def _subjects(
 def _active(
     statement: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
 ) -> ContactMention | None:
-    pair = paired_areas(scope)
+    pair, near = paired_areas(scope), scope[:_NEAR]
     scope = clause(rule("contact_words.aside").sub(" ", scope))
     first = rule("contact_words.own_first").match(scope)
     if first and (first["own"] == actor if first["own"] else MENTION.findall(scope)[:1] != [actor]):
@@ -217,7 +218,7 @@ def _active(
         return None
     if (named := rule("contact.with_area_of").search(scope)) and named["v"] != other and scope[: named.start()].strip():
         actor, area = named["v"], area_of(named["area"])
-    if other not in roster.ids and (hurt := rule("contact_words.own_on_thing").search(scope)):
+    if other not in roster.ids and (hurt := rule("contact_words.own_on_thing").search(near)):
         area = area or area_of(hurt["plane"] or hurt["area"])
     if rule("contact.rear_end").match(verb) or rule("contact.from_behind").search(scope):
         area, other_area = area or "front", "back"
