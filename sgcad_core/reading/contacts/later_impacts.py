@@ -172,7 +172,6 @@ def _undone(text: str, m: re.Match[str]) -> bool:
 
 def _hit(segment: Segment, m: re.Match[str], thing: re.Match[str], vehicle: str) -> ImpactRead:
     own = rule("contact_words.with_its").search(segment.text[m.end() : m.end() + 60])
-    own = own or rule("course_impacts.damaging").match(segment.text, m.end())
     area = side_met(area_of(own["area"])) if own else None
     impact = ImpactTold(vehicle, _word(thing["thing"]), area)
     at = segment.at + thing.start("thing") - _SLACK

@@ -46,6 +46,7 @@ def plain(statement: Statement, roster: Roster) -> str:
     text = rule("zones.possessive").sub(lambda m: f"the {m['area']} of {m['v']}", text)
     text = rule("zones.apposed").sub(r"the \g<area> of \g<v>", text)
     text = rule("zones.bare_possessive").sub(r"the \g<area> of \g<v>", text)
+    text = rule("zones.frontal_of").sub("front", text)
     text = rule("zones.front_of_none").sub(r"the \g<area> of \g<v>", text)
     text = rule("zones.part_of_side").sub(r"\g<side>", text)
     text = rule("zones.two_sides").sub(r"\g<first>", text)
