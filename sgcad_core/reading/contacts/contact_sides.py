@@ -134,6 +134,8 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
     skidding = any(crash.motions[v].has_cue("lost_control", 3) for v in pair) and turn == 0
     bent = skidding or turn % 180 != 0 or any(inferred.maneuvers[v] in _BENT for v in pair)
     zones = {mention.actor: mention.actor_area, mention.other: mention.other_area}
+    sidles = any(inferred.maneuvers[v] in _SIDLING for v in pair)
+    along = {v: turn == 0 and (sidles or inferred.maneuvers[v] in _BENT) for v in pair}
     areas: dict[str, Area | None] = {}
     for me, you in ((mention.actor, mention.other), (mention.other, mention.actor)):
         mine, yours = zones[me], zones[you]
@@ -141,7 +143,7 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
             bent
             and mine
             and mine.count("/") == 1
-            and (yours in ("front", None) or (turn == 0 and yours in OPPOSITE_HAND))
+            and (yours in ("front", None) or (along[me] and yours in OPPOSITE_HAND))
             and inferred.maneuvers[me] not in ("stopped", "parked")
         )
         flank = flank or _beside(mine, yours, turn)
