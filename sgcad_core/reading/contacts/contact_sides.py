@@ -123,7 +123,7 @@ def _flanks(
     told = area_a or area_b
     if told not in OPPOSITE_HAND or min(apart(at_contact, 0), apart(at_contact, 180)) > 45:
         return area_a, area_b
-    facing = _flank_facing(told, at_contact)  # type: ignore[arg-type]
+    facing = _flank_facing(told, at_contact)
     return area_a or facing, area_b or facing
 
 

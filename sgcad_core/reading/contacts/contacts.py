@@ -98,9 +98,11 @@ def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
 
 def _also(mention: ContactMention, subjects: tuple[str, ...]) -> Iterator[ContactMention]:
     """The same contact of the verb's further subjects, each a striker as well, or struck as well."""
-    side = "other" if mention.passive else "actor"
-    if getattr(mention, side) in subjects and not mention.mutual:
-        yield from (replace(mention, **{side: v}) for v in subjects if v not in (mention.actor, mention.other))
+    if mention.mutual or (mention.other if mention.passive else mention.actor) not in subjects:
+        return
+    for v in subjects:
+        if v not in (mention.actor, mention.other):
+            yield replace(mention, other=v) if mention.passive else replace(mention, actor=v)
 
 
 def _place(text: str, word: str, verb: int = 0) -> int:
@@ -168,10 +170,8 @@ def _hit_by_thing(
     """ "The gate closed and made contact with the front of V1"."""
     whom, area = _object(statement, "", scope, roster)
     if whom not in roster.ids and rule("contact_words.own_front").match(scope):
-        whom, area = (
-            next(iter(MENTION.findall(thing.string)[-1:] or (roster.ids if len(roster.ids) == 1 else ())), None),
-            "front",
-        )
+        named = MENTION.findall(thing.string) or (roster.ids if len(roster.ids) == 1 else [None])
+        whom, area = named[-1], "front"
     if whom not in roster.ids or whom is None:
         return None
     return ContactMention(
