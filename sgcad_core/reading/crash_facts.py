@@ -16,7 +16,7 @@ from sgcad_core.reading.contacts.contact_records import ContactFacts, leading_en
 from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.inference.gaps import Gap
-from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold, end_of
+from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold, end_of, side_met
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.maneuvers import meant_turn
 from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
@@ -193,7 +193,9 @@ def _without_vehicle(
     for mention in crash.contact_mentions:
         other = ids.get(mention.other)
         if other and other.id not in found:
-            area = end_of(mention.actor_area) or leading_end(inferred.maneuvers.get(mention.actor, "other"))
+            backs = inferred.maneuvers.get(mention.actor) == "backing"
+            side_told = end_of(mention.actor_area) if backs else side_met(mention.actor_area)
+            area = side_told or leading_end(inferred.maneuvers.get(mention.actor, "other"))
             faces = (
                 side_facing(crash.walks.get(mention.other, WalkDirection()), inferred.headings.get(mention.actor))
                 or "left"

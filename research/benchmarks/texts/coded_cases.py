@@ -27,6 +27,7 @@ FIELDS = (
 _NO_THING = {"rollover", "jackknife", "noncollision", "ground", "fell_out", "own_trailer", "occupant", None}
 _TERRAIN = {"curb", "ditch", "embankment"}
 """May be read as a thing or not; no part of the comparison."""
+_TERRAIN_WORD = re.compile(r"\b(?:curb|ditch|culvert|embankment)s?$")
 _LETTERS = {"pedestrian": "P", "bicycle": "BP", "nonmotorist": "PB", "animal": "AP"}
 _SIDES = {"front", "back", "left", "right"}
 _WORDS = {"P": "person", "B": "cyclist", "A": "animal"}
@@ -193,11 +194,8 @@ def _events(events: Sequence[Mapping[str, Any]], made: Drawn) -> Iterator[Verdic
     told, kept = _told_events(events), kept_events(events)
     if not kept:
         return
-    met = list(made.contacts)
-    while told[0]["other"] in _TERRAIN:
-        met = met[1:] if met and _fits(told[0], met[0]) else met
-        told = told[1:]
-    first, contact = kept[0], met[0] if met else None
+    first, met = kept[0], _behind_terrain(told, made)
+    contact = met[0] if met else None
     right = _fits(first, contact)
     pair = is_vehicle(first["other"])
     shown = " > ".join(f"{c.striker} {c.struck}" for c in met[:1]) or made.refusal[:60] or "none"
@@ -207,6 +205,21 @@ def _events(events: Sequence[Mapping[str, Any]], made: Drawn) -> Iterator[Verdic
         yield _sides(first, contact if right else None, pair)
     if later := _later(kept):
         yield _in_order(later, met[right:])
+
+
+def _behind_terrain(told: Sequence[Mapping[str, Any]], made: Drawn) -> list[Contact]:
+    """The contacts behind those with terrain that is coded before the first thing, whether it was read or not."""
+    words = {other.id: other.word for other in made.reading.crash.others}
+    met = list(made.contacts)
+    first = next(event for event in told if event["other"] not in _TERRAIN)
+    for event in told[: told.index(first)]:
+        if (
+            met
+            and _fits(event, met[0])
+            and (_TERRAIN_WORD.search(words.get(met[0].struck, "")) or not _fits(first, met[0]))
+        ):
+            met = met[1:]
+    return met
 
 
 def is_vehicle(name: str) -> bool:

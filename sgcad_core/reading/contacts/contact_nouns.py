@@ -13,7 +13,7 @@ from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.text.area_phrases import Zone, area_if_told, area_of
+from sgcad_core.reading.text.area_phrases import Zone, area_if_told, area_of, plain
 
 _PUSHES = (("v1", "v2", "a2"), ("v3", "v4", "a4"), ("v5", "v6", "a6"))
 """Groups of a pushed vehicle, the vehicle it is pushed into, and the area."""
@@ -155,16 +155,20 @@ def is_noun(before: str, word: str, behind: str) -> bool:
     nouns = ("impact", "contact", "hit", "impacts", "contacts", "hits", "strike")
     if word.lower() not in nouns or rule("contact_words.caused").search(before):
         return False
+    if word.lower() == "hit" and rule("contact.own_area").search(before):
+        return False
     return bool(rule("contact.noun_before").search(before))
 
 
 def subject_area(before: str, subject: str) -> Zone | None:
     """Area in "the front of V1 ..." if the nearest mention of the subject has one."""
+    if own := rule("contact.own_area").search(before):
+        return area_of(own["area"])
     named = rule("contact.subject_area").within(vehicle=r"(?P<vehicle>V\d+)")  # one pattern for all vehicles
     found = [m for m in named.finditer(before) if m["vehicle"].upper() == subject.upper()]
     if found and found[-1]["area"] and not rule("contact.place_before").search(before[: found[-1].start("area")]):
         return area_of(found[-1]["area"])
-    own = rule("contact.own_area").search(before) or rule("contact.with_before").search(before)
+    own = rule("contact.with_before").search(before)
     return area_of(own["area"]) if own else None
 
 
@@ -210,3 +214,32 @@ def mutual(statement: Statement, subjects: tuple[str, ...], verb: str, before: s
     return ContactMention(
         subjects[0], subjects[1], first, second, statement.number, statement.role, False, verb.lower(), True
     )
+
+
+def area_against_area(mention: ContactMention, scope: str) -> ContactMention:
+    """The mention with the areas of "the left side of V1 against the right side of V2" behind its verb."""
+    met = rule("contact_words.against").search(scope)
+    if not met or {met["v1"], met["v2"]} != {mention.actor, mention.other}:
+        return mention
+    zones = {met["v1"]: area_if_told(met["a1"]), met["v2"]: area_if_told(met["a2"])}
+    return replace(mention, actor_area=zones[mention.actor], other_area=zones[mention.other])
+
+
+def clause(scope: str) -> str:
+    """Up to the end of the clause, but at least as far as the first vehicle behind the verb."""
+    first = MENTION.search(scope)
+    end = rule("contact_words.clause_end").search(scope, first.end() if first and first.start() < 70 else 0)
+    return scope[: end.start()] if end else scope
+
+
+def damaged(statement: Statement, roster: Roster) -> Zone | None:
+    """ "The left side of V2 was damaged when V1 contacted it": the area that the sentence begins with."""
+    found = rule("contact_words.damaged").match(plain(statement, roster))
+    return area_of(found["area"]) if found else None
+
+
+def area_behind(text: str) -> Zone | None:
+    """ "... in the left side", "... in the center of the rear bumper": the first phrase that names a side."""
+    near = rule("contact.area_ends").split(clause(text)[:80])[0]
+    areas = [area_of(m["area"]) for m in rule("contact.owned_area").finditer(near)]
+    return next(filter(None, areas), None) if rule("contact_words.on_the").search(near) else None

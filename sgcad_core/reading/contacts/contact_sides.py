@@ -58,6 +58,8 @@ def _join(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) ->
         area_a, area_b = _brushed(inferred, mention, area_a, area_b)
     if area_a is None and area_b is None and is_sideswipe(mention):
         area_a, area_b = _sideswiped(inferred, a, b)
+    if is_sideswipe(mention) and (area_a is None) != (area_b is None):
+        area_a, area_b = _flanks(inferred, a, b, area_a, area_b)
     if mention.mutual and area_a is None and area_b is None and _less_of_a_striker(inferred, a, b):
         a, b = b, a
     if area_a is None and area_b is None and (caught := _caught_up(crash, a, b)):
@@ -112,6 +114,19 @@ def _sideswiped(inferred: CrashInferred, a: str, b: str) -> tuple[Area, Area]:
     return ("left", "right") if a_goes_left else ("right", "left")
 
 
+def _flanks(
+    inferred: CrashInferred, a: str, b: str, area_a: Area | None, area_b: Area | None
+) -> tuple[Area | None, Area | None]:
+    """Both flanks of a sideswipe that tells one of them, where the vehicles touch along each other."""
+    turn = between(inferred.headings.get(a, "N"), inferred.headings.get(b, "N"))
+    at_contact = (turn + TURN_DEG.get(inferred.maneuvers[b], 0.0) - TURN_DEG.get(inferred.maneuvers[a], 0.0)) % 360
+    told = area_a or area_b
+    if told not in OPPOSITE_HAND or min(apart(at_contact, 0), apart(at_contact, 180)) > 45:
+        return area_a, area_b
+    facing = _flank_facing(told, at_contact)
+    return area_a or facing, area_b or facing
+
+
 def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) -> tuple[Area | None, Area | None]:
     """Each corner as its end or its flank: the flank where the paths cross and the other hits with its front."""
     turn = between(inferred.headings[mention.actor], inferred.headings[mention.other])
@@ -119,6 +134,8 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
     skidding = any(crash.motions[v].has_cue("lost_control", 3) for v in pair) and turn == 0
     bent = skidding or turn % 180 != 0 or any(inferred.maneuvers[v] in _BENT for v in pair)
     zones = {mention.actor: mention.actor_area, mention.other: mention.other_area}
+    sidles = any(inferred.maneuvers[v] in _SIDLING for v in pair)
+    along = {v: turn == 0 and (sidles or inferred.maneuvers[v] in _BENT) for v in pair}
     areas: dict[str, Area | None] = {}
     for me, you in ((mention.actor, mention.other), (mention.other, mention.actor)):
         mine, yours = zones[me], zones[you]
@@ -126,13 +143,24 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
             bent
             and mine
             and mine.count("/") == 1
-            and yours in ("front", None)
+            and (yours in ("front", None) or (along[me] and yours in OPPOSITE_HAND))
             and inferred.maneuvers[me] not in ("stopped", "parked")
         )
+        flank = flank or _beside(mine, yours, turn)
         areas[me] = mine.split("/")[1] if flank and mine else end_of(mine)  # type: ignore[assignment]
     if set(areas.values()) == {"back"} and not any(inferred.maneuvers[v] == "backing" for v in pair):
         areas = {v: _flank_of(zones[v]) or areas[v] for v in pair}
     return areas[mention.actor], areas[mention.other]
+
+
+def _beside(mine: Zone | None, yours: Zone | None, turn: float) -> bool:
+    """Whether a corner touches with its flank whatever the maneuver: corners of opposite hands side by side, or a rear
+    corner that an oncoming front finds."""
+    hand, other = _flank_of(mine), _flank_of(yours)
+    rear = end_of(mine) == "back"
+    if turn == 180:
+        return rear and hand is not None and end_of(yours) == "front"
+    return turn == 0 and hand is not None and other == OPPOSITE_HAND[hand] and end_of(mine) == end_of(yours)
 
 
 def _flank_of(zone: Zone | None) -> Area | None:

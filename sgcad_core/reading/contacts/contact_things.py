@@ -28,6 +28,17 @@ def listed(mention: ContactMention, scope: str) -> list[ContactMention]:
     ]  # fmt: skip
 
 
+def listed_things(mention: ContactMention, scope: str) -> list[ContactMention]:
+    """ "V1 struck a rock and then a post": the same for the things that are listed behind the first one."""
+    thing = None if mention.passive or MENTION.fullmatch(mention.other) else rule("contact_words.object").match(scope)
+    found: list[ContactMention] = []
+    while thing:
+        thing = rule("course_impacts.further").match(scope, thing.end())
+        if thing:
+            found.append(replace(mention, other=thing["thing"].lower()))
+    return found
+
+
 def lone_thing(scope: str) -> bool:
     """Whether what is struck is a thing, and no vehicle is named before the clause ends."""
     thing = rule("contact_words.object").match(scope)
@@ -58,7 +69,7 @@ def thing_acts(before: str, roster: Roster) -> re.Match[str] | None:
     """The thing or animal that is the subject of a verb of touching."""
     if roster.counted:
         return rule("contact_words.thing_moves").search(before)
-    return rule("contact_words.thing_acts").search(before) or rule("contact_words.thing_enters").match(before)
+    return rule("contact_words.thing_acts").search(before) or rule("contact_words.thing_enters").search(before)
 
 
 def any_object(statement: Statement, scope: str, roster: Roster) -> str | None:

@@ -7,12 +7,16 @@ subject, voice and object. Interviews come last: they exchange numbers. Infers n
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from sgcad_core.reading.actors.people_objects import with_people
 from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.contacts.contact_nouns import (
+    area_against_area,
+    area_behind,
+    clause,
+    damaged,
     door_of,
     involved,
     is_noun,
@@ -31,6 +35,7 @@ from sgcad_core.reading.contacts.contact_things import (
     any_object,
     behind_things,
     listed,
+    listed_things,
     lone_thing,
     off_the_ground,
     thing_acts,
@@ -40,6 +45,9 @@ from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement, subject_starts
 from sgcad_core.reading.text.area_phrases import Zone, area_by, area_if_told, area_of, plain
 from sgcad_core.reading.text.sentence_roles import HIT
+
+_NEAR = 80
+"""Characters behind a verb within which the side that struck a thing is told."""
 
 
 def contact_mentions(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
@@ -61,7 +69,7 @@ def contact_mentions(statements: Iterable[Statement], roster: Roster) -> tuple[C
 def _only_named(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
     """Contacts of a report that says only which vehicles collided."""
     found = (replace(b, mutual=True, summary=True) for t in statements for b in involved(t, plain(t, roster)))
-    return tuple(b for b in found if {b.actor, b.other} <= set(roster.ids) and b.actor != b.other)
+    return tuple(b for b in found if len({b.actor, b.other} & set(roster.ids)) == 2)
 
 
 def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
@@ -74,9 +82,9 @@ def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
             continue
         mention = _contact_mention(statement, text, m, starts, roster)
         if mention:
-            told = [mention, *listed(mention, text[m.end() :]), *behind_things(mention, text[m.end() :])]
-            told += [replace(mention, actor=v) for v in _subjects(statement, text[: m.start()], m, starts)
-                     if v != mention.actor and lone_thing(text[m.end() :])]  # fmt: skip
+            behind = text[m.end() :]
+            told = [mention, *listed(mention, behind), *listed_things(mention, behind), *behind_things(mention, behind)]
+            told += _also(mention, _subjects(statement, text[: m.start()], m, starts))
             found += [replace(b, at=_place(text, b.other, m.start())) for b in told]
     nouns = tuple(touches(statement, text))
     found += [replace(b, at=b.at or _place(text, b.other)) for b in nouns]
@@ -86,6 +94,15 @@ def _sentence(statement: Statement, roster: Roster) -> list[ContactMention]:
     found += [b for b in without_agent(statement, text, roster) if frozenset((b.actor, b.other)) not in told_by_verbs]
     found += [b for b in together(statement, text) if frozenset((b.actor, b.other)) not in told_by_verbs]
     return [b for b in found if b.actor in roster.ids and b.actor != b.other]
+
+
+def _also(mention: ContactMention, subjects: tuple[str, ...]) -> Iterator[ContactMention]:
+    """The same contact of the verb's further subjects, each a striker as well, or struck as well."""
+    if mention.mutual or (mention.other if mention.passive else mention.actor) not in subjects:
+        return
+    for v in subjects:
+        if v not in (mention.actor, mention.other):
+            yield replace(mention, other=v) if mention.passive else replace(mention, actor=v)
 
 
 def _place(text: str, word: str, verb: int = 0) -> int:
@@ -118,9 +135,13 @@ def _contact_mention(
     if moves and not passive and (hit := _hit_by_thing(statement, moves, scope, m.group(), roster)):
         return hit
     subjects = _subjects(statement, before, m, starts)
+    alone = len(roster.ids) == 1 and rule("contact.own_area").search(before)
+    subjects = subjects or (roster.ids if alone else ())  # "a deer came from the left where the front struck it"
     if not subjects:
         return None
-    if len(subjects) > 1 and not lone_thing(scope):
+    struck_by = passive and rule("contact_words.by").search(scope)
+    third = rule("contact_words.active_object").match(scope)
+    if len(subjects) > 1 and not (lone_thing(scope) or struck_by or (third and third["v"] not in subjects)):
         return mutual(statement, subjects, m.group(), before, scope)
     actor, actor_area = subjects[0], subject_area(before, subjects[0])
     if actor not in MENTION.findall(before):
@@ -128,11 +149,13 @@ def _contact_mention(
     other = None if passive or not roster.counted else roster.other(actor)
     if other and (part := door_of(actor, before, scope)):
         actor, actor_area = other, area_of(part)
-    return (
-        _passive(statement, actor, actor_area, scope, m.group(), roster)
-        if passive
-        else _active(statement, actor, actor_area, scope, m.group(), roster)
-    )
+    if passive:
+        return _passive(statement, actor, actor_area, scope, m.group(), roster)
+    told = _active(statement, actor, actor_area, scope, m.group(), roster)
+    if not told or told.other in roster.ids:
+        return told
+    wheel = rule("contact_words.wheel_end").search(before) or rule("contact_words.wheel_end").search(scope)
+    return replace(told, actor_area="front") if wheel else told
 
 
 def _meant_by_pronoun(statement: Statement, actor: str, scope: str, roster: Roster) -> str:
@@ -146,6 +169,9 @@ def _hit_by_thing(
 ) -> ContactMention | None:
     """ "The gate closed and made contact with the front of V1"."""
     whom, area = _object(statement, "", scope, roster)
+    if whom not in roster.ids and rule("contact_words.own_front").match(scope):
+        named = MENTION.findall(thing.string) or (roster.ids if len(roster.ids) == 1 else [None])
+        whom, area = named[-1], "front"
     if whom not in roster.ids or whom is None:
         return None
     return ContactMention(
@@ -177,9 +203,10 @@ def _subjects(
 def _active(
     statement: Statement, actor: str, area: Zone | None, scope: str, verb: str, roster: Roster
 ) -> ContactMention | None:
-    pair = paired_areas(scope)
-    scope = _clause(rule("contact_words.aside").sub(" ", scope))
-    if (first := rule("contact_words.own_first").match(scope)) and MENTION.findall(scope)[:1] != [actor]:
+    pair, near = paired_areas(scope), scope[:_NEAR]
+    scope = clause(rule("contact_words.aside").sub(" ", scope))
+    first = rule("contact_words.own_first").match(scope)
+    if first and (first["own"] == actor if first["own"] else MENTION.findall(scope)[:1] != [actor]):
         area, scope = area_of(first["area"]) or area, " " + scope[first.end() :]
     own = rule("contact_words.with_its").search(scope)
     if own and rule("contact.made_contact").match(verb) and rule("contact.touched").match(scope):
@@ -191,6 +218,8 @@ def _active(
         return None
     if (named := rule("contact.with_area_of").search(scope)) and named["v"] != other and scope[: named.start()].strip():
         actor, area = named["v"], area_of(named["area"])
+    if other not in roster.ids and (hurt := rule("contact_words.own_on_thing").search(near)):
+        area = area or area_of(hurt["plane"] or hurt["area"])
     if rule("contact.rear_end").match(verb) or rule("contact.from_behind").search(scope):
         area, other_area = area or "front", "back"
     if rule("contact.backs_into").match(verb):
@@ -198,23 +227,7 @@ def _active(
     if pair and area is None:
         area, other_area = pair
     mention = ContactMention(actor, other, area, other_area, statement.number, statement.role, False, verb.lower())
-    return _area_against_area(mention, scope)
-
-
-def _area_against_area(mention: ContactMention, scope: str) -> ContactMention:
-    """The mention with the areas of "the left side of V1 against the right side of V2" behind its verb."""
-    met = rule("contact_words.against").search(scope)
-    if not met or {met["v1"], met["v2"]} != {mention.actor, mention.other}:
-        return mention
-    zones = {met["v1"]: area_if_told(met["a1"]), met["v2"]: area_if_told(met["a2"])}
-    return replace(mention, actor_area=zones[mention.actor], other_area=zones[mention.other])
-
-
-def _clause(scope: str) -> str:
-    """Up to the end of the clause, but at least as far as the first vehicle behind the verb."""
-    first = MENTION.search(scope)
-    end = rule("contact_words.clause_end").search(scope, first.end() if first and first.start() < 70 else 0)
-    return scope[: end.start()] if end else scope
+    return area_against_area(mention, scope)
 
 
 def _object(statement: Statement, actor: str, scope: str, roster: Roster) -> tuple[str | None, Zone | None]:
@@ -222,7 +235,7 @@ def _object(statement: Statement, actor: str, scope: str, roster: Roster) -> tup
     m = rule("contact_words.active_object").match(scope)
     thing = rule("contact_words.object").match(scope)
     if m and not (thing and thing.end() < m.start("v") and thing["object"].lower() != "trailer"):
-        area = area_if_told(m["area"]) or _area_behind(scope[m.end() :])
+        area = area_if_told(m["area"]) or area_behind(scope[m.end() :])
         return _not_itself(m["v"], actor, roster, statement), area
     towed = ("trailer", "parked") if len(roster.ids) > 1 else ("parked",)
     if thing and thing["object"].lower() not in towed:
@@ -233,13 +246,13 @@ def _object(statement: Statement, actor: str, scope: str, roster: Roster) -> tup
         or rule("contact.nothing").match(scope)
     ):
         only = rule("contact_words.the_area").match(scope)
-        return _the_other(statement, actor, roster), area_if_told(only["area"]) if only else _area_behind(
+        return _the_other(statement, actor, roster), area_if_told(only["area"]) if only else area_behind(
             scope
-        ) or _damaged(statement, roster)
+        ) or damaged(statement, roster)
     late = MENTION.search(scope)
     if late and late.group() != actor and late.start() < 60:
         named = rule("contact.area_of_vehicle").given(vehicle=late.group()).search(scope)
-        return late.group(), area_if_told(named["area"]) if named else _area_behind(scope[late.end() :])
+        return late.group(), area_if_told(named["area"]) if named else area_behind(scope[late.end() :])
     return any_object(statement, scope, roster), None
 
 
@@ -251,25 +264,12 @@ def _the_other(statement: Statement, actor: str, roster: Roster) -> str | None:
     return roster.other(actor) or next(named, subject or earlier)
 
 
-def _damaged(statement: Statement, roster: Roster) -> Zone | None:
-    """ "The left side of V2 was damaged when V1 contacted it": the area that the sentence begins with."""
-    found = rule("contact_words.damaged").match(plain(statement, roster))
-    return area_of(found["area"]) if found else None
-
-
 def _not_itself(named: str, actor: str, roster: Roster, statement: Statement) -> str | None:
     """The named vehicle, or another one where it would strike itself: the other of two, or the subject of the sentence
     before."""
     if named != actor:
         return named
     return roster.other(actor) if roster.counted else _the_other(statement, actor, roster)
-
-
-def _area_behind(text: str) -> Zone | None:
-    """ "... in the left side", "... in the center of the rear bumper": the first phrase that names a side."""
-    near = rule("contact.area_ends").split(_clause(text)[:80])[0]
-    areas = [area_of(m["area"]) for m in rule("contact.owned_area").finditer(near)]
-    return next(filter(None, areas), None) if rule("contact_words.on_the").search(near) else None
 
 
 def _passive(
@@ -295,6 +295,6 @@ def _passive(
     if other is None:
         return None
     area, other_area = struck_pair(scope, area, other_area)
-    area = area or (_area_behind(scope[by.end() :]) if by and not own else None)
+    area = area or (area_behind(scope[by.end() :]) if by and not own else None)
     other = _not_itself(other, actor, roster, statement) or other
     return ContactMention(other, actor, other_area, area, statement.number, statement.role, True, verb.lower())

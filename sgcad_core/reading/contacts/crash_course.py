@@ -76,6 +76,8 @@ class ImpactRead(NamedTuple):
 
     impact: ImpactTold
     source: Source
+    at: int = 0
+    """About where in its sentence, in characters."""
 
 
 def courses_told(

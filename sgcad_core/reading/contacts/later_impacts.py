@@ -13,7 +13,7 @@ from dataclasses import replace
 from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.contacts.contact_records import GROUND, ContactMention
 from sgcad_core.reading.contacts.crash_course import UNREAD, CoursesRead, ImpactRead
-from sgcad_core.reading.inference.inference_state import end_of
+from sgcad_core.reading.inference.inference_state import end_of, side_met
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
 from sgcad_core.reading.motion.motion_record import Source
@@ -22,6 +22,8 @@ from sgcad_core.reading.text.sentence_roles import Role
 from sgcad_core.records.course import ImpactTold
 from sgcad_core.records.specs import Area
 
+_SLACK = 12
+"""Characters by which a word may stand earlier in a sentence's one form than in the sentence."""
 _RETOLD: tuple[Role, ...] = ("interview", "injury")
 
 
@@ -63,8 +65,10 @@ def things_struck(
 
 def _place(read: ImpactRead, texts: Mapping[int, str]) -> tuple[int, int]:
     """Where an impact is told: the number of its sentence, and the place of the struck one's word in it."""
-    number, other = read.source.number, read.impact.other
-    return number, max(texts.get(number, "").find(other.lower()), 0)
+    number, other = read.source.number, read.impact.other.lower()
+    text = texts.get(number, "")
+    at = text.find(other, max(read.at, 0))
+    return number, at if at >= 0 else max(text.find(other), 0)
 
 
 def _first_places(contact_mentions: Sequence[ContactMention], roster: Roster) -> list[tuple[int, int]]:
@@ -88,7 +92,7 @@ def _of_mention(mention: ContactMention, roster: Roster) -> ImpactRead | None:
     person = any(user.search(mention.other) for user in of_role("road_user"))
     if mention.other in roster.ids or person or mention.other in GROUND or mention.role in _RETOLD:
         return None
-    area = end_of(mention.actor_area)
+    area = side_met(mention.actor_area)
     impact = ImpactTold(mention.actor, _word(mention.other), area)
     return ImpactRead(impact, mention.source)
 
@@ -132,7 +136,8 @@ def _once(things: Sequence[ImpactRead]) -> Iterator[ImpactRead]:
     for read in things:
         key = read.impact.actor, read.impact.other
         number = read.source.number
-        if key not in last or number - last[key] == 1:
+        further = number == last.get(key) and rule("course_impacts.one_more").search(read.source.words)
+        if key not in last or number - last[key] == 1 or further:
             yield read
         last[key] = number
 
@@ -149,7 +154,7 @@ def _things(segment: Segment) -> Iterator[ImpactRead]:
         for thing in _listed(segment.text, m):
             end = thing.end()
             if thing["thing"] not in GROUND:
-                yield from (_hit(segment, m, thing["thing"], vehicle) for vehicle in segment.subjects)
+                yield from (_hit(segment, m, thing, vehicle) for vehicle in segment.subjects)
 
 
 def _listed(text: str, first: re.Match[str]) -> Iterator[re.Match[str]]:
@@ -165,12 +170,12 @@ def _undone(text: str, m: re.Match[str]) -> bool:
     return bool(rule("course_evasion.to_avoid").search(before) or rule("course_impacts.nearly").search(before))
 
 
-def _hit(segment: Segment, m: re.Match[str], thing: str, vehicle: str) -> ImpactRead:
+def _hit(segment: Segment, m: re.Match[str], thing: re.Match[str], vehicle: str) -> ImpactRead:
     own = rule("contact_words.with_its").search(segment.text[m.end() : m.end() + 60])
-    own = own or rule("course_impacts.damaging").match(segment.text, m.end())
-    area = end_of(area_of(own["area"])) if own else None
-    impact = ImpactTold(vehicle, _word(thing), area)
-    return ImpactRead(impact, Source(segment.number, m[0], "course_impacts.object"))
+    area = side_met(area_of(own["area"])) if own else None
+    impact = ImpactTold(vehicle, _word(thing["thing"]), area)
+    at = segment.at + thing.start("thing") - _SLACK
+    return ImpactRead(impact, Source(segment.number, m[0], "course_impacts.object"), at)
 
 
 def _word(thing: str) -> str:

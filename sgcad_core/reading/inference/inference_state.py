@@ -69,6 +69,13 @@ def end_of(zone: Zone | None) -> Area | None:
     return zone.split("/")[0] if zone else None  # type: ignore[return-value]
 
 
+def side_met(zone: Zone | None) -> Area | None:
+    """The side that meets a thing: a rear corner's flank, since nothing strikes it that does not back; else as
+    `end_of`."""
+    corner = (zone or "").split("/")
+    return corner[1] if len(corner) == 2 and corner[0] == "back" else end_of(zone)  # type: ignore[return-value]
+
+
 def bend_deg(maneuver: Maneuver, own: Area | None, other: Area | None) -> float:
     """Heading change at contact, clockwise degrees: little where a turning vehicle's front finds a flank."""
     early = own == "front" and other in ("left", "right", "back")

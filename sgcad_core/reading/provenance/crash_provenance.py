@@ -252,7 +252,7 @@ def course_provenance(builder: FactBuilder, crash: CrashTold) -> Iterator[Fact]:
             yield builder.stated(f"vehicles.{vehicle}.{name}", value, source)
     if (event := crash.untouched) is not None:
         yield builder.stated(f"vehicles.{event.vehicle}.event", event.kind, event.source)
-    for number, (impact, source) in enumerate(crash.impacts):
+    for number, (impact, source, _) in enumerate(crash.impacts):
         for name in ("actor", "other", "actor_area", "other_area"):
             if (told := getattr(impact, name)) is not None:
                 yield builder.stated(f"impacts.{number}.{name}", told, source)

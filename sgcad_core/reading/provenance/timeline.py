@@ -171,7 +171,7 @@ def _contacts(builder: FactBuilder, told: CrashTold, hits: Sequence[ContactMenti
         fact = builder.stated("act", "contact", hit.source)
         value = hit.actor_area.split("/")[0] if hit.actor_area else None
         yield hit.number, _act(fact, hit.source, hit.actor, "contact", phase, other=hit.other, value=value)
-    for impact, source in told.impacts:
+    for impact, source, _ in told.impacts:
         phase = "before" if impact.before else "after"
         fact = builder.stated("act", "contact", source)
         act = _act(fact, source, impact.actor, "contact", phase, other=impact.other, value=impact.actor_area)

@@ -20,6 +20,8 @@ def area_of(words: str) -> Zone | None:
     not told which corner.
     """
     text = words.lower().replace("-", " ")
+    if both := rule("zones.end_and_side").search(text):
+        return "back" if both["back"] else "front"
     flank: Area | None = next((side.yields["area"] for side in of_role("flank") if side.search(text)), None)
     front = bool(rule("zones.front").search(text))
     back = bool(rule("zones.back").search(text))
@@ -34,13 +36,23 @@ def area_of(words: str) -> Zone | None:
 def plain(statement: Statement, roster: Roster) -> str:
     """The sentence with possessives turned round: "V1's left side" -> "the left side of V1"."""
     text = rule("zones.plural_number").sub(r"V\1's", statement.text)
+    text = rule("zones.bracketed").sub(r"the \g<area> of \g<v>", text)
     text = rule("zones.trailer_of_number").sub(r"\1", text)
+    text = rule("zones.towed_by").sub(lambda m: m["v"] or m["towing"], text)
     text = rule("zones.of_trailer").sub(r"of \1", text)
+    towing = [v.id for v in roster.vehicles if v.trailer]
+    text = rule("zones.the_trailer").sub(f"of {towing[0]}", text) if len(towing) == 1 else text
     text = rule("zones.opened_door").sub(r"\g<told>the \g<door> of \g<v>", text)
     text = rule("zones.possessive").sub(lambda m: f"the {m['area']} of {m['v']}", text)
     text = rule("zones.apposed").sub(r"the \g<area> of \g<v>", text)
     text = rule("zones.bare_possessive").sub(r"the \g<area> of \g<v>", text)
+    text = rule("zones.frontal_of").sub("front", text)
+    text = rule("zones.front_of_none").sub(r"the \g<area> of \g<v>", text)
+    text = rule("zones.part_of_side").sub(r"\g<side>", text)
+    text = rule("zones.two_sides").sub(r"\g<first>", text)
+    text = rule("zones.side_first").sub(r"the \g<first> of \g<v>", text)
     if statement.subject:
+        text = rule("zones.of_the_vehicle").sub(rf"the \g<area> of {statement.subject}", text)
         text = rule("zones.area_of_the_vehicle").sub(rf"\g<area> of {statement.subject}", text)
     return rule("zones.its_area").sub(lambda m: _its(m, statement, text, roster), text)
 

@@ -74,6 +74,17 @@ def test_a_curb_on_the_way_to_the_first_contact_is_passed_over() -> None:
     assert _marks(_case(events=events))["first_pair"]
 
 
+@pytest.mark.parametrize("between", ["", "struck the curb with its right wheels. V1 then "])
+def test_a_curb_before_the_first_thing_may_be_read_or_not(between: str) -> None:
+    text = f"V1 was northbound on a two-lane road. V1 left it on the right and {between}struck a tree with its front."
+    events = [_event("V1", "curb", ("right", None)), _event("V1", "tree", ("front", None))]
+    marks = _marks(_case(text=text, events=events, vehicles=[_vehicle("V1", "straight")]))
+    assert marks["first_thing"]
+    assert marks["first_sides"]
+    events[1] = _event("V1", "animal", ("front", None))
+    assert not _marks(_case(text=text, events=events, vehicles=[_vehicle("V1", "straight")]))["first_thing"]
+
+
 def test_blind_lines_show_totals_and_no_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     wrong = [_vehicle("V1", "straight"), _vehicle("V2", "turn_left")]
     lines = [_case(id=f"a-{n}", vehicles=wrong, blind=n < 6) for n in range(12)]

@@ -1,0 +1,72 @@
+"""Which sides touch where corners, flanks and things are told, who else is struck by one verb, and things in order."""
+
+from __future__ import annotations
+
+import pytest
+
+from sgcad_core.reading.reading import read
+
+SIDE_BY_SIDE = "V1 and V2 were eastbound in lanes one and two. V1 changed lanes to the left and "
+AHEAD = "V1 was eastbound. V2 was stopped in front of V1. "
+OFF_ROAD = "V1 was northbound on a two-lane road and left it on the right. "
+
+
+def _contacts(text: str) -> list[str]:
+    return [f"{c.striker} {c.striker_area} {c.struck} {c.struck_area}" for c in read(text).crash.contacts]
+
+
+@pytest.mark.parametrize(
+    ("text", "first"),
+    [
+        (SIDE_BY_SIDE + "its left front corner struck the right side of V2.", "V1 left V2 right"),
+        (SIDE_BY_SIDE + "the left front corner of V1 struck the right front corner of V2.", "V1 left V2 right"),
+        (SIDE_BY_SIDE + "sideswiped the right side of V2.", "V1 left V2 right"),
+        ("V1 was southbound. V2 was northbound. The front of V2 struck the left rear of V1.", "V2 front V1 left"),
+        ("V1 was northbound. V2 was westbound. The front of V1 struck the right rear of V2.", "V1 front V2 right"),
+        (AHEAD + "The left front of V1 struck the right rear of V2.", "V1 front V2 back"),
+    ],
+)
+def test_corners_touch_with_the_end_or_flank_that_meets(text: str, first: str) -> None:
+    assert _contacts(text)[0] == first
+
+
+@pytest.mark.parametrize(
+    ("told", "side"),
+    [
+        ("Its left rear struck a guardrail.", "left"),
+        ("Its left front struck a guardrail.", "front"),
+        ("Its right front tire struck a boulder.", "front"),
+        ("Its right front tire and right rear tire struck a wall.", "right"),
+        ("Its front and right side struck a fence.", "front"),
+    ],
+)
+def test_a_thing_is_met_with_the_end_of_a_front_corner_and_the_flank_of_a_rear_one(told: str, side: str) -> None:
+    assert _contacts(OFF_ROAD + told)[0] == f"V1 {side} O1 front"
+
+
+def test_one_that_backs_meets_a_thing_with_its_rear_corner_as_its_back() -> None:
+    assert (
+        _contacts("V1 was backing out of a driveway and its left rear corner struck a pole.")[0] == "V1 back O1 front"
+    )
+
+
+@pytest.mark.parametrize(
+    ("told", "pairs"),
+    [
+        ("V2 and V3 were then struck in the rear by the front of V1.", {("V1", "V2"), ("V1", "V3")}),
+        ("Both V1 and V2 struck the left side of V3.", {("V1", "V3"), ("V2", "V3")}),
+    ],
+)
+def test_one_verb_tells_a_contact_of_each_of_its_subjects(told: str, pairs: set[tuple[str, str]]) -> None:
+    found = read(f"V1 was eastbound. V2 and V3 were stopped ahead of V1. {told}").crash.contacts
+    assert pairs <= {(c.striker, c.struck) for c in found}
+
+
+def test_things_of_one_sentence_stand_in_their_order_though_a_word_comes_twice() -> None:
+    text = OFF_ROAD + "It hit a small tree with its front, a bush with its left side, then a large tree with its front."
+    assert [(i.other, i.after) for i in read(text).crash.impacts] == [("tree", 1), ("bush", 1), ("tree", 1)]
+
+
+def test_a_thing_that_is_told_again_in_the_same_sentence_is_one() -> None:
+    text = "V1 hit V2. V1 left the road and hit a pole, and its right side hit the pole as it passed."
+    assert [i.other for i in read(text).crash.impacts] == ["pole"]
