@@ -8,8 +8,6 @@ from __future__ import annotations
 import faulthandler
 import json
 import multiprocessing
-import multiprocessing.connection
-import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
@@ -25,6 +23,7 @@ from flows.case.steps import AT_ONCE, StepCalls
 from flows.case_files.find_cases import Case
 from flows.case_files.step_keys import StepKeys
 from sgcad_core.config import Config, build
+from sgcad_core.system.parent_end import end_with_parent
 
 Detail = Literal["stage", "case"]
 """What Prefect is shown: a task a step (`stage`), or one task a case."""
@@ -115,11 +114,5 @@ def _limited(alone: bool) -> Iterator[None]:
 def prepare_process() -> None:
     """Start a worker process: no Ctrl-C, an end with its parent, and what every case imports."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if parent := multiprocessing.parent_process():
-        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True, name="parent").start()
+    end_with_parent()
     import flows.case.chain  # noqa: F401 - the imports of a first case
-
-
-def _end_with(sentinel: int) -> None:
-    multiprocessing.connection.wait([sentinel])
-    os._exit(1)

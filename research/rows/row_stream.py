@@ -8,7 +8,6 @@ number and the progress at which its pool was ordered. A `Place` holds both, so 
 from __future__ import annotations
 
 import multiprocessing as mp
-import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -29,6 +28,7 @@ from research.rows.gist_rows import gist_row, told_of
 from research.rows.partial_labels import Told, load
 from research.rows.report_rows import MAX_TEXT, training_row
 from research.rows.row import Row
+from sgcad_core.system.parent_end import end_with_parent
 
 POOL = 96
 MOVED = 0.5
@@ -172,18 +172,12 @@ def pool(coder: Coder, number: int, progress: float, stage: str = "all", told: S
 
 
 def _work(folder: str, stage: str, told: str, jobs: Any, done: Any) -> None:
+    end_with_parent()
     import torch
 
     torch.set_num_threads(1)
     make = _maker(folder, stage, told)
-    parent = os.getppid()
-    while os.getppid() == parent:
-        try:
-            job = jobs.get(timeout=5)
-        except Empty:
-            continue
-        if job is None:
-            break
+    while (job := jobs.get()) is not None:
         number, progress = job
         done.put((number, make(number, progress)))
     done.cancel_join_thread()
