@@ -1,4 +1,4 @@
-"""The end of a worker process whose parent has ended, however that ended: kill -9 tells nobody."""
+"""The end of a worker process whose parent has ended, however that ended: `kill -9` is not announced."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import threading
 def end_with_parent() -> None:
     """End this process of `multiprocessing` as soon as the one that started it has ended; a main process goes on.
 
-    The parent's sentinel is asked, not its number: a parent that ends while its child still imports is missed by who
-    compares `os.getppid()` with its first answer.
+    The parent's sentinel is asked, not its number: a first answer of `os.getppid()` is wrong where the parent ended
+    while its child still imported.
     """
     if parent := multiprocessing.parent_process():
         threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True, name="parent").start()

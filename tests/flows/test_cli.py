@@ -198,7 +198,7 @@ def test_a_single_report_needs_no_server_tells_its_steps_and_is_tracked_afterwar
     config = config_file(tracker={"name": "testkit", "file": str(log)})
     ended = sgcad("run", reports(a="") / "a", "--config", config, "--out", out, PREFECT_HOME=str(tmp_path / "home"))
     assert ended.returncode == 0, ended.stderr
-    steps = ["read", "road[1]", "scenario[1]", "simulate", "draw", "files"]
+    steps = ["read", "road[1]", "scenario[1]", "simulate", "draw"]
     assert [line.rpartition(" ")[2] for line in ended.stderr.splitlines()][: len(steps)] == steps
     assert not (tmp_path / "home").exists()
     deadline = time.monotonic() + 120

@@ -44,11 +44,12 @@ def test_the_wrong_side_is_doubted_once_a_vehicle_with_its_lanes() -> None:
     made = scenario("crossing_centerline")
     told_other = made.model_copy(update={
         "actors": tuple(a.model_copy(update={"maneuver": "straight"}) for a in made.actors)})  # fmt: skip
-    (found,) = judged(told_other)
+    open_sides = "V1 was traveling north. V2 was traveling south. V1 and V2 collided."
+    (found,) = judged(told_other, open_sides)
     assert (found.source, found.severity, found.where) == ("places", "doubt", "actor V1")
     assert " s on the wrong side of the road before its contact: S_0 " in str(found.value)
     assert ", opposing -" in str(found.value)
-    assert [one.severity for one in judged(told_other, odd="note")] == ["note"]
+    assert [one.severity for one in judged(told_other, open_sides, odd="note")] == ["note"]
 
 
 def test_networks_and_scenarios_without_motion_are_not_judged() -> None:
