@@ -11,7 +11,7 @@ import io
 import threading
 from collections import OrderedDict
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import torch
@@ -224,6 +224,23 @@ class Prompter:
         rows, columns = self.layouts[picture.digest]
         text = tiled(rows, columns, str(self.image_text) * (count // (rows * columns + 1)))
         return self._tokenized(text, add=False)
+
+
+@dataclass
+class AroundPrompter:
+    """A writer of prompts with pictures: those without diagrams are the prompter's own."""
+
+    words: Prompter
+
+    @property
+    def loaded(self) -> Loaded:
+        """The tokenizer and template."""
+        return self.words.loaded
+
+    @property
+    def specials(self) -> list[str]:
+        """The tokenizer's special tokens, and the marker of pictures if there is one."""
+        return self.words.specials
 
 
 def thought(text: str) -> str:

@@ -11,8 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from plugins.backbone.engine.records import Picture, Prompt
-from plugins.backbone.hf_load import Loaded
-from plugins.backbone.hf_prompt import Prompter
+from plugins.backbone.hf_prompt import AroundPrompter
 from plugins.backbone.llama.projector import MARKER, Bitmap, Projector, Shown
 from plugins.backbone.prompt import Parts
 from sgcad_core.case.records import Diagram
@@ -54,21 +53,10 @@ def spans(prompt: Prompt) -> list[Span]:
 
 
 @dataclass
-class GgufPrompts:
+class GgufPrompts(AroundPrompter):
     """Writes prompts: those without diagrams as text, the others with the projector's pieces. Shows one view."""
 
-    words: Prompter
     projector: Projector
-
-    @property
-    def loaded(self) -> Loaded:
-        """The tokenizer and template."""
-        return self.words.loaded
-
-    @property
-    def specials(self) -> list[str]:
-        """The tokenizer's special tokens and the picture's marker."""
-        return self.words.specials
 
     @property
     def notes(self) -> tuple[str, ...]:

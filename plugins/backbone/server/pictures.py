@@ -13,8 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from plugins.backbone.engine.records import Prompt
-from plugins.backbone.hf_load import Loaded
-from plugins.backbone.hf_prompt import Prompter
+from plugins.backbone.hf_prompt import AroundPrompter
 from plugins.backbone.prompt import Parts
 from plugins.backbone.server.http import data_url
 
@@ -31,23 +30,12 @@ class Shown(list[int]):
 
 
 @dataclass
-class ShownPrompts:
+class ShownPrompts(AroundPrompter):
     """Writes prompts: those without diagrams here, the others by the server (`render`)."""
 
-    words: Prompter
     render: Callable[[Content], Shown]
     kept: OrderedDict[str, Shown] = field(default_factory=OrderedDict)
     lock: threading.Lock = field(default_factory=threading.Lock)
-
-    @property
-    def loaded(self) -> Loaded:
-        """The tokenizer and template."""
-        return self.words.loaded
-
-    @property
-    def specials(self) -> list[str]:
-        """The tokenizer's special tokens."""
-        return self.words.specials
 
     @property
     def notes(self) -> tuple[str, ...]:

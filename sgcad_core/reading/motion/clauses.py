@@ -247,7 +247,7 @@ def _is_subject(text: str, match: re.Match[str]) -> bool:
         if rule("clauses.of_neighbor").search(before) and behind.startswith(" that "):
             return False
         stands = rule("clauses.stands_beside").match(behind)
-        if stands and rule("clauses.in_front_of_it").search(before) and match.string[: match.start()].count("V"):
+        if stands and rule("clauses.in_front_of_it").search(before) and MENTION.search(text[: match.start()]):
             return False  # who is ahead of V1 stands there, not V1: "V2 was in front of V1 stopped at the light"
         return bool(rule("clauses.relative").match(behind) or stands)
     if rule("clauses.driver_of").search(before):

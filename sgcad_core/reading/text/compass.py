@@ -32,6 +32,11 @@ def between(first: Compass, second: Compass) -> int:
     return (COMPASS.index(second) - COMPASS.index(first)) % 8 * 45
 
 
+def against(first: Compass, second: Compass) -> bool:
+    """Whether two headings come against each other, an eighth more or less."""
+    return between(first, second) in (135, 180, 225)
+
+
 def compass_of_angle(heading_rad: float) -> Compass:
     """The nearest compass word of a heading counter-clockwise from east."""
     return COMPASS[round((90 - math.degrees(heading_rad)) % 360 / 45) % 8]

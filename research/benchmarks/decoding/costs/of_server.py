@@ -19,22 +19,13 @@ from plugins.backbone.openai_server import OpenAIServer
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
 from research.benchmarks.decoding.gate import FIRST_MADE
+from research.benchmarks.decoding.server_contrast import road_schema
 from research.generator.report import make_report
 from sgcad_core.case.records import Context, Query
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.interfaces import Decoder
 
-_SCHEMA = {
-    "type": "object",
-    "properties": {
-        "bearing": {"type": "string", "enum": ["N", "NE", "E", "SE", "S", "SW", "W", "NW"]},
-        "lanes_in": {"type": "integer", "minimum": 0, "maximum": 8},
-        "median": {"type": "string", "enum": ["none", "painted", "raised", "grass"]},
-        "surface": {"type": "string", "enum": ["dry", "wet", "snow", "ice"]},
-    },
-    "required": ["bearing", "lanes_in", "median", "surface"],
-    "additionalProperties": False,
-}
+_SCHEMA = road_schema(surface={"type": "string", "enum": ["dry", "wet", "snow", "ice"]})
 
 
 def seconds_of(process: psutil.Process) -> float:
