@@ -13,7 +13,8 @@ from sgcad_core.reading.contacts.contact_records import ContactMention, with_are
 from sgcad_core.reading.contacts.contact_sides import infer_contacts
 from sgcad_core.reading.inference.inference_state import QUARTER_DEG, CrashInferred, CrashTold, end_of
 from sgcad_core.reading.inference.lane_moves import change_hands, over_centerline, passing_by
-from sgcad_core.reading.inference.silent_vehicles import beside_road, from_entered_lanes, from_turn_lane
+from sgcad_core.reading.inference.silent_vehicles import ahead_in_queue, beside_road, from_entered_lanes, from_turn_lane
+from sgcad_core.reading.inference.turn_ways import turns_by_way
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.heading_lane_cues import TURNS_TO
 from sgcad_core.reading.motion.maneuvers import (
@@ -44,10 +45,12 @@ def infer_crash(crash: CrashTold) -> CrashInferred:
     _still_moving(crash, inferred, pairs)
     _set_going(crash, inferred, pairs)
     beside_road(crash, inferred, pairs)
+    ahead_in_queue(crash, inferred, pairs)
     from_turn_lane(crash, inferred, pairs)
     change_hands(crash, inferred, pairs)
     _mend_headings(crash, inferred, pairs)
     _complete_headings(crash, inferred, pairs)
+    turns_by_way(crash, inferred, pairs)
     over_centerline(crash, inferred, pairs)
     passing_by(crash, inferred)
     inferred.exits = {v: e for v in crash.roster.ids if (e := _exit(crash.motions[v], inferred, v)) is not None}

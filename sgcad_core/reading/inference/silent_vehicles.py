@@ -1,4 +1,4 @@
-"""Vehicles of which a report tells little: beside the road, in a turn lane, in lanes that another one entered.
+"""Vehicles of which a report tells little: beside the road, in a queue, in a turn lane, in lanes that others entered.
 
 Knows what was read and is settled so far; no text.
 """
@@ -6,7 +6,7 @@ Knows what was read and is settled so far; no text.
 from __future__ import annotations
 
 from sgcad_core.reading.contacts.contact_records import ContactMention
-from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
+from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold, end_of
 from sgcad_core.reading.motion.maneuvers import DEPARTURES
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.records.specs import Maneuver
@@ -47,3 +47,25 @@ def from_entered_lanes(crash: CrashTold, inferred: CrashInferred, pairs: list[Co
             way = crash.motions[came].entered
             if way and came in inferred.headings and met not in inferred.headings and not crash.motions[met].relations:
                 inferred.headings[met] = way
+
+
+def ahead_in_queue(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
+    """Stops a vehicle of which no maneuver is told but that another one stood behind it, and was pushed into it.
+
+    So it was in 26 of 32 coded reports with "stopped behind" (CISS, those to learn from).
+    """
+    rear_ends = {
+        (v, b.other if v == b.actor else b.actor) for b in pairs for v in (b.actor, b.other)
+        if tuple(end_of(zone) for zone in b.areas_of(v)) == ("front", "back")
+    }  # fmt: skip
+    for v in crash.roster.ids:
+        stood = [d.number for d in crash.motions[v].cues if d.kind == "stopped"] if not crash.roster.counted else []
+        for _, _, ahead, word in crash.motions[v].relations:
+            if word != "behind" or ahead is None or ahead in inferred.told_maneuvers or (v, ahead) not in rear_ends:
+                continue
+            told = crash.motions[v].sources.get(f"same {ahead}")
+            if told is None or told.number not in stood:
+                continue
+            if inferred.maneuvers[v] == "stopped" and inferred.maneuvers[ahead] == "straight":
+                inferred.maneuvers[ahead] = "stopped"
+                inferred.sources[f"{ahead} maneuver"] = told._replace(rule="infer.ahead_in_queue")

@@ -39,6 +39,8 @@ class _Need:
     """Only where no lane of the other direction lies beside it."""
     leftward: bool = False
     """To move to the left: on a road whose lanes are told, that may be over the middle of the road."""
+    by_word: bool = False
+    """By "the left lane" alone, which on a road of two lanes for two ways is that of the other direction."""
     why: str = ""
 
 
@@ -114,7 +116,7 @@ def _needs(crash: CrashFacts) -> Iterator[_Need]:
             yield _Need(v.heading, turn=turn, why=f"{v.id} is in the {turn}-turn lane")
         elif v.lane or word in ("left", "middle"):
             lane = f"lane {abs(v.lane)} from the {'right' if v.lane > 0 else 'left'}" if v.lane else f"the {word} lane"
-            yield _Need(v.heading, min(_own(v), MOST), why=f"{v.id} is in {lane}")
+            yield _Need(v.heading, min(_own(v), MOST), by_word=word == "left", why=f"{v.id} is in {lane}")
 
 
 # ------------------------------------------------------------------ the layout
@@ -124,7 +126,7 @@ def _widened(facts: RoadFacts, layout: RoadLayout) -> tuple[RoadLayout, tuple[st
     legs, notes = {leg.bearing: leg for leg in layout.legs}, []
     for need in _needs(facts.crash):
         leg = legs.get(turned(need.way, 180))
-        if leg is None or leg.kind in JOINING or not leg.lanes_in:
+        if leg is None or leg.kind in JOINING or not leg.lanes_in or (need.by_word and _one_each_way(facts, leg)):
             continue
         beside = leg.lanes_out and leg.median in ("none", "painted")
         if beside and (need.parted or (need.leftward and _counts(facts, leg))):
@@ -140,6 +142,12 @@ def _counts(facts: RoadFacts, leg: Leg) -> bool:
     """Whether the story counts the lanes of a leg's road."""
     told = (road.lanes for road in facts.streets if road.axis in (None, axis_of(leg.bearing)))
     return any(lanes.total or lanes.each_way or lanes.toward for lanes in told)
+
+
+def _one_each_way(facts: RoadFacts, leg: Leg) -> bool:
+    """Whether a leg's road is told to have two lanes, and those for two ways."""
+    told = (road.lanes for road in facts.streets if road.axis in (None, axis_of(leg.bearing)))
+    return any(lanes.total == 2 and (lanes.one_way is False or lanes.divided is False) for lanes in told)
 
 
 def _changed(need: _Need, leg: Leg, legs: dict[Compass, Leg], facts: RoadFacts) -> Iterator[tuple[Compass, Leg]]:

@@ -203,11 +203,12 @@ def _resumed(
 
 
 def _subjects(text: str) -> Iterator[re.Match[str]]:
-    """Mentions that may be subjects; of "V2, and V2", which is no list, the second alone."""
+    """Mentions that may be subjects; of "V2, and V2" and "behind V2 and V3 was", which are no lists, the last alone."""
     for m in _SUBJECT.finditer(text):
         named = list(MENTION.finditer(text, m.start(), m.end())) if m.group("list") else []
         again = len(named) > 1 and len({n[0] for n in named}) == 1
-        yield (_SUBJECT.match(text, named[-1].start()) or m) if again else m
+        alone = rule("clauses.one_alone").match(text, m.end()) and _BESIDE.search(text[: m.start()])
+        yield (_SUBJECT.match(text, named[-1].start()) or m) if again or (named and alone) else m
 
 
 def _means_all(statement: Statement, pronoun: re.Match[str]) -> bool:

@@ -17,10 +17,13 @@ _FROM = rule("headings.from")
 _CAME_WAY = rule("headings.came_way")
 _EXIT = rule("headings.exit")
 _TURN_BEFORE = rule("headings.turn_before")
-_TURNS = (rule("headings.turned_to"), rule("headings.turned_onto"))
+_TURNING_WAY = rule("deeds.turn_to")
+TURNING_WAY = _TURNING_WAY.id
+"""The rule of turns of an untold hand."""
+_TURNS = (rule("headings.turned_to"), rule("headings.turned_onto"), rule("headings.turned_for"), _TURNING_WAY)
 TURNS_TO = tuple(turn.id for turn in _TURNS)
 """Rules of turns whose way at the end is plainly told."""
-_WAYS = ("dir", "dir2", "dir3", "dir4")
+_WAYS = ("dir", "dir2", "dir3", "dir4", "onto", "onto2")
 """Groups of the way in alternatives of a rule."""
 
 
@@ -28,7 +31,7 @@ def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
     """Adds the headings and exits of a segment."""
     for turn in _TURNS:
         for m in turn.finditer(text):
-            _note_exit(motion, m["dir"], turn.id)
+            _note_exit(motion, next(filter(None, map(m.groupdict().get, _WAYS))), turn.id)
     text = rule("headings.turned_to").sub(lambda m: " " * len(m[0]), text)
     told = [(m, by) for by in (rule("headings.heading"), rule("headings.heading_bare")) for m in by.finditer(text)]
     for m, by in sorted(told, key=lambda found: found[0].start()):

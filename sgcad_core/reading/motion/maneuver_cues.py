@@ -118,7 +118,8 @@ def _read_turn_to(segment: _Segment) -> None:
         return
     for told in (rule("deeds.turn_to"), rule("deeds.meant_way")):
         for m in told.finditer(text):
-            start, end = motion.headings[0].value if motion.headings else None, compass_of(m["onto"])
+            start = motion.headings[0].value if motion.headings else None
+            end = compass_of(m["onto"] or m.groupdict().get("onto2") or "")
             side = _BY_ANGLE.get(between(start, end)) if start and end else None
             if side and not _NOT.search(text[: m.start()]):
                 meant = told.id == "deeds.meant_way" or _LATER.search(text[: m.start()])

@@ -39,6 +39,9 @@ def read_motions(
         _read_part(found[identity.id], identity, roster)
     impact = min((t.number for t in statements if t.role == "impact"), default=len(statements))
     impact = struck_at if roster.counted and struck_at is not None else impact
+    touched = {
+        v: t.number for t in reversed(statements) if t.role == "impact" for v in MENTION.findall(t.text)
+    }  # each in the first sentence of its own contact: a third vehicle still waits behind that of the others
     texts = {t.number: t.text for t in statements}
     from_median = counts_from_median(texts.values(), roster)
     contact_sentence = next((t for t in statements if t.number == impact), None) if roster.counted else None
@@ -48,7 +51,7 @@ def read_motions(
         for vehicle in segment.subjects:
             motion = found[vehicle]
             motion.at = segment.number
-            after = segment.number > impact
+            after = segment.number > (impact if roster.counted else max(impact, touched.get(vehicle, 0)))
             late = after and bool(motion.headings or motion.cues)
             if late and roster.counted:
                 continue

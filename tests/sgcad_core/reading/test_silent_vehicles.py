@@ -95,3 +95,22 @@ def test_the_own_side_may_stand_behind_the_verb(words: str) -> None:
 def test_a_side_is_the_subject_without_a_comma_before_it(words: str) -> None:
     first = read(f"V1 was northbound. V2 was westbound. {words}").crash.contacts[0]
     assert (first.striker, first.struck, first.struck_area) == ("V2", "V1", "right")
+
+
+@pytest.mark.parametrize(("more", "expected"), [
+    ("", "stopped"),
+    (" V3 was turning left.", "turn_left"),
+    (" V3 was traveling straight ahead.", "straight"),
+])  # fmt: skip
+def test_who_is_ahead_in_a_queue_stands_with_it(more: str, expected: str) -> None:
+    text = f"V1 was northbound. V2 was stopped behind V3.{more} The front of V1 struck the back of V2. "
+    assert maneuvers(text + "The front of V2 struck the back of V3.")["V3"] == expected
+
+
+@pytest.mark.parametrize("waits", [
+    "V3 was stopped facing north at the intersection. The left side of V1 struck the left side of V3.",
+    "V1 went on and its left side struck the left side of V3, which was stopped facing north.",
+])  # fmt: skip
+def test_a_third_vehicle_waits_until_its_own_contact(waits: str) -> None:
+    text = "V1 was southbound. V2 was eastbound. In the intersection the front of V2 struck the right side of V1. "
+    assert (maneuvers(text + waits)["V3"], headings(text + waits)["V3"]) == ("stopped", "N")

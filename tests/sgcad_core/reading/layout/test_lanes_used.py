@@ -25,6 +25,7 @@ def notes(text: str) -> tuple[str, ...]:
     ("V1 was traveling north in lane two and changed lanes to the left. V2 was traveling north.", 3),
     ("V1 was traveling north in the second lane from the left and changed lanes to the right. V2 headed north.", 3),
     ("V1 was traveling north in the left lane. V2 was traveling north.", 2),
+    ("V1 was traveling north in the left lane of a two-lane, two-way road. V2 was traveling north.", 1),
     ("V1 was traveling north in the middle lane. V2 was traveling north.", 3),
     ("V1 was traveling north in lane four. V2 was traveling north.", 4),
     ("V1 was traveling north. V2 was traveling north.", 1),
