@@ -32,7 +32,7 @@ from sgcad_core.roads.compiled_facts import (
     junctions_as_told,
     roads_as_told,
 )
-from sgcad_core.roads.lane_total_readings import allowed_totals, may_show_other_lanes
+from sgcad_core.roads.lane_total_readings import allowed_totals, may_be_of_one_half, may_show_other_lanes
 
 _finding = FindingFactory("road_narrative")
 
@@ -186,6 +186,8 @@ class RoadNarrative(Validator):
             here = self._on_axis(road, drawn)
             searched = drawn if may_show_other_lanes(road, pictured) else here
             if not allowed or not here or any(d.total in allowed for d in searched):
+                continue
+            if may_be_of_one_half(road, facts.crash) and any({d.forward, d.backward} & allowed for d in searched):
                 continue
             low, high = min(allowed), max(allowed)
             said = str(low) if low == high else f"{low} to {high}"

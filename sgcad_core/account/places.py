@@ -18,7 +18,7 @@ from sgcad_core.records.specs import Compass
 from sgcad_core.roads.closures import tapers
 from sgcad_core.roads.compiled_facts import CompiledRoad, headings_agree, junctions, junctions_as_told
 from sgcad_core.roads.lane_graph import network_figures
-from sgcad_core.roads.lane_total_readings import allowed_totals
+from sgcad_core.roads.lane_total_readings import allowed_totals, may_be_of_one_half
 
 TOLERANCE_DEG = 35.0
 """Between a road as drawn and the compass direction that the report names, as the validator `road_narrative` has it."""
@@ -91,21 +91,11 @@ def _lanes(made: ExecutedCase, road: RoadFact, here: list[CompiledRoad], name: s
     """A lane total with all readings that its words allow: of one carriageway, or of both where that is open."""
     wanted = allowed_totals(road, made.pictured) or {value, 2 * value if name == "lanes_each_way" else value}
     counts = {d.total for d in here}
-    if name == "lanes_each_way" or _of_one_half(made, road):
+    if name == "lanes_each_way" or may_be_of_one_half(road, made.reading.crash):
         counts |= {n for d in here for n in (d.forward, d.backward)}
         wanted = wanted | {value}
     seen = ", ".join(f"{d.id} {d.forward}+{d.backward}" for d in here[:4])
     return Comparison(bool(counts & wanted), seen, f"drawn: {seen or 'no such road'}")
-
-
-def _of_one_half(made: ExecutedCase, road: RoadFact) -> bool:
-    """Whether a total may be that of one carriageway: of a divided road, a highway, or with a lane beyond its half."""
-    lanes = road.lanes
-    if lanes.divided is False:
-        return False
-    used = max((abs(v.lane or 0) for v in made.reading.crash.vehicles if v.id in road.vehicles), default=0)
-    beyond = lanes.total is not None and used > (lanes.total + 1) // 2
-    return bool(lanes.divided or lanes.highway or road.kind == "freeway" or beyond)
 
 
 def _lanes_one_way(made: ExecutedCase, here: list[CompiledRoad], way: str, value: int) -> Comparison | None:

@@ -5,6 +5,7 @@ Knows the read road facts; no network.
 
 from __future__ import annotations
 
+from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.roads.road_facts import RoadFact
 
 
@@ -33,3 +34,13 @@ def allowed_totals(road: RoadFact, pictured: bool = True) -> set[int]:
 def may_show_other_lanes(road: RoadFact, pictured: bool) -> bool:
     """Whether a diagram may show other lanes than the text counts; not where lanes are stated for each direction."""
     return pictured and len(road.lanes.toward) < 2
+
+
+def may_be_of_one_half(road: RoadFact, crash: CrashFacts) -> bool:
+    """Whether a total may be that of one carriageway: of a divided road, a highway, or with a lane beyond its half."""
+    lanes = road.lanes
+    if lanes.divided is False:
+        return False
+    used = max((abs(v.lane or 0) for v in crash.vehicles if v.id in road.vehicles), default=0)
+    beyond = lanes.total is not None and used > (lanes.total + 1) // 2
+    return bool(lanes.divided or lanes.highway or road.kind == "freeway" or beyond)

@@ -54,7 +54,11 @@ def test_four_told_legs_are_held_to_their_places_unless_a_diagram_may_show_other
     assert placed == ([] if pictured else [("N",), ("E",), ("S",), ("W",)])
 
 
-@pytest.mark.parametrize("text", [CROSSING, T, PLAIN, ONE_WAY])
+BEYOND_HALF = "V1 was westbound on a three-lane road in lane 3. V2 was westbound in lane 2. V1 struck the rear of V2."
+HIGHWAY = "V1 was westbound in lane three of a three-lane highway. V2 was westbound. V1 struck the rear of V2."
+
+
+@pytest.mark.parametrize("text", [CROSSING, T, PLAIN, ONE_WAY, BEYOND_HALF, HIGHWAY])
 def test_a_network_as_told_has_nothing_to_repair(text: str) -> None:
     written = Template().write(Context(narrative=text), (), (), None, 1)  # type: ignore[arg-type]
     assert findings(text, written) == []

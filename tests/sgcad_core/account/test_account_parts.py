@@ -12,7 +12,7 @@ from sgcad_core.account.contacts import contact_items
 from sgcad_core.account.inputs import ExecutedCase, is_stated
 from sgcad_core.account.motion import judged, motion_items
 from sgcad_core.account.notes import notes_of
-from sgcad_core.account.places import _of_one_half, place_items
+from sgcad_core.account.places import place_items
 from sgcad_core.account.unread_text import unread_items
 from sgcad_core.account.words import named, phrase, shown
 from sgcad_core.config import load
@@ -21,6 +21,7 @@ from sgcad_core.reading.text.normalise import split_sentences
 from sgcad_core.reading.text.traced_text import TracedText
 from sgcad_core.records.course import CourseTold, Move
 from sgcad_core.records.facts import Fact
+from sgcad_core.roads.lane_total_readings import may_be_of_one_half
 from sgcad_core.settings import ROOT
 
 DEMO = ROOT / "docs" / "demo" / "left-turn-at-signal"
@@ -239,10 +240,9 @@ def test_things_that_are_named_and_not_drawn_lack(made, text, field, value):
     ("V1 was northbound in lane 3 of a four-lane, undivided road.", False),
     ("V1 was northbound on a three-lane, divided road.", True),
 ])  # fmt: skip
-def test_a_total_may_be_that_of_one_carriageway_where_the_words_allow_it(made, road, half):
+def test_a_total_may_be_that_of_one_carriageway_where_the_words_allow_it(road, half):
     reading = read(f"{road} V2 was northbound. The front of V1 struck the back of V2.")
-    drawn = replace(made, reading=reading)
-    assert _of_one_half(drawn, reading.roads.roads[0]) == half
+    assert may_be_of_one_half(reading.roads.roads[0], reading.crash) == half
 
 
 # ------------------------------------------------------------------ words
