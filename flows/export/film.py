@@ -22,6 +22,7 @@ from flows.player import overview_png
 from flows.player.player_data import COLORS, TRAFFIC_COLOR
 from flows.player.road_shapes import drawing_of
 from sgcad_core.case.records import ActorInfo, Trajectory
+from sgcad_core.case.verdict_told import verdict_sentence
 from sgcad_core.errors import MissingTool
 from sgcad_core.geometry.plane import Box, corners
 from sgcad_core.system.pictures import opened
@@ -156,7 +157,7 @@ class Shots:
     def _write_verdict(self, pen: ImageDraw.ImageDraw, left: int) -> None:
         account = self.case.result.get("account") or {}
         color = _VERDICT.get(account.get("verdict", ""), _DOUBT)
-        lines = textwrap.wrap(account.get("sentence", ""), _REPORT_CHARS)[:4]
+        lines = textwrap.wrap(verdict_sentence(self.case.result), _REPORT_CHARS)[:4]
         top = SIDE - 20 - 19 * len(lines)
         pen.rectangle((left - 10, top - 2, left - 6, SIDE - 20), fill=color)
         for k, line in enumerate(lines):

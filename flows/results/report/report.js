@@ -80,7 +80,8 @@ function card(one) {
     figure.append(image);
     left.append(figure);
   }
-  const story = element("p", "story", one.text);
+  const story = element("p", "story");
+  tell(story, one);
   story.title = "click for the whole report";
   story.addEventListener("click", () => story.classList.toggle("open"));
   left.append(story);
@@ -88,6 +89,19 @@ function card(one) {
   one.arms.forEach((run, k) => tiles.append(tile(run, data.arms[k])));
   box.append(left, tiles);
   return box;
+}
+
+// The report, each sentence marked as it was read: by color, and what is not simply read in words too.
+function tell(story, one) {
+  let from = 0;
+  for (const [start, end, mark] of one.told) {
+    story.append(one.text.slice(from, start));
+    const span = element("span", "told " + mark, one.text.slice(start, end));
+    if (data.marked[mark]) span.append(element("sup", "", data.marked[mark]));
+    story.append(span);
+    from = end;
+  }
+  story.append(one.text.slice(from));
 }
 
 function tile(run, arm) {
@@ -196,6 +210,7 @@ let typing;
 byId("words").addEventListener("input", () => { clearTimeout(typing); typing = setTimeout(choose, 120); });
 byId("tools").addEventListener("submit", (event) => event.preventDefault());
 new IntersectionObserver((seen) => seen.some((s) => s.isIntersecting) && made < shown.length && more(), { rootMargin: "900px" }).observe(byId("more"));
+if (data.arms.length > 1) byId("by").textContent = " (by the reference, or the first arm that has the case)";
 const wish = new URLSearchParams(location.hash.slice(1));
 for (const id of ["words", "arm", "show", "sort"]) if (wish.has(id)) byId(id).value = wish.get(id);
 choose();

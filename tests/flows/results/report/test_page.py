@@ -67,6 +67,16 @@ def test_the_gallery_holds_what_a_case_came_to(tables, tmp_path):
     assert len(first["draw"]["lanes"]) == 6
 
 
+def test_each_sentence_of_the_report_is_marked_as_it_was_read(tables, tmp_path):
+    text = made(tables, tmp_path, {"a": {"c1": {"marked": True}}})
+    (case,) = data_of(text)["cases"]
+    assert {case["text"][a:b]: mark for a, b, mark in case["told"]} == {
+        "V1 was traveling east on a two-lane road.": "read", "V2 was stopped ahead.": "contradicts",
+        "The front of V1 struck the rear of V2.": "unread",
+    }  # fmt: skip
+    assert data_of(text)["marked"]["unread"] == "not read"
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium to look with")
 def test_the_page_can_be_read_in_the_light_and_in_the_dark(tables, tmp_path):
