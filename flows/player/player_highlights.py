@@ -16,6 +16,8 @@ from sgcad_core.reading.text.traced_text import placed, shown
 
 ALONG_DEG = 20.0
 """A lane within this of a road's axis is taken for that road's."""
+BENT_DEG = 30.0
+"""A lane whose ends run off its axis by more goes around a circle, not along a road."""
 _COMPASS = {point: angle_of(point) for point in WORDS.values()}
 Row = Mapping[str, Any]
 
@@ -63,8 +65,10 @@ def road_axes(facts: Iterable[Row]) -> dict[str, float]:
 
 def road_along(strip: Strip, axes: Mapping[str, float]) -> str:
     """The road that a lane runs along; "" where it runs along none."""
-    dx, dy = np.asarray(strip.points[-1]) - np.asarray(strip.points[0])
-    heading = math.atan2(dy, dx)
+    points = np.asarray(strip.points)
+    heading, *ends = (math.atan2(b[1] - a[1], b[0] - a[0]) for a, b in (points[[0, -1]], points[:2], points[-2:]))
+    if any(abs(math.remainder(end - heading, 2 * math.pi)) > math.radians(BENT_DEG) for end in ends):
+        return ""
     off = {name: abs(math.remainder(heading - axis, math.pi)) for name, axis in axes.items()}
     near = min(off, key=lambda name: off[name], default="")
     return near if near and math.degrees(off[near]) <= ALONG_DEG else ""

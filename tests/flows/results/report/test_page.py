@@ -93,6 +93,22 @@ def test_the_page_can_be_read_in_the_light_and_in_the_dark(tables, tmp_path):
         assert walker.faults == []
 
 
+@pytest.mark.slow
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium to look with")
+def test_a_tile_tells_the_verdict_in_its_sentence_and_the_report_what_was_not_read(tables, tmp_path):
+    file = tmp_path / "r.html"
+    file.write_text(made(tables, tmp_path, {"a": {"c1": {"marked": True}}}))
+    with walking(CHROMIUM) as walker:
+        walker.open(f"file://{file}")
+        walker.until("document.querySelector('.tile .account')")
+        assert walker.run("document.querySelector('.tile .account').textContent").startswith("⚠ Lacking: 4 of 5 things told")
+        told = "[...document.querySelectorAll('.story .told')]"
+        assert walker.run(f"{told}.map(s => s.className)") == ["told read", "told contradicts", "told unread"]
+        assert walker.run("[...document.querySelectorAll('.told sup')].map(s => s.textContent)") == [
+            "contradicted", "not read"
+        ]  # fmt: skip
+
+
 def test_a_case_is_small_so_that_500_stay_quick(tables, tmp_path):
     few = len(made(tables, tmp_path, {"a": {"c0": {}}}))
     more = len(made(tables, tmp_path, {"a": {f"c{k}": {} for k in range(5)}}))
