@@ -101,7 +101,9 @@ def test_a_tile_tells_the_verdict_in_its_sentence_and_the_report_what_was_not_re
     with walking(CHROMIUM) as walker:
         walker.open(f"file://{file}")
         walker.until("document.querySelector('.tile .account')")
-        assert walker.run("document.querySelector('.tile .account').textContent").startswith("⚠ Lacking: 4 of 5 things told")
+        assert walker.run("document.querySelector('.tile .account').textContent").startswith(
+            "⚠ Lacking: 4 of 5 things told"
+        )
         told = "[...document.querySelectorAll('.story .told')]"
         assert walker.run(f"{told}.map(s => s.className)") == ["told read", "told contradicts", "told unread"]
         assert walker.run("[...document.querySelectorAll('.told sup')].map(s => s.textContent)") == [
