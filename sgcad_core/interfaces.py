@@ -184,6 +184,9 @@ class Validator(Plugin):
     stage: ClassVar[str]
     """"road", "scenario" or "both": the artifacts it reads. What it cannot judge it passes over: []."""
 
+    def load(self) -> None:
+        """Begin now what the first call would wait for; called beside other work, and most have nothing to do."""
+
     @abstractmethod
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """Everything wrong, worst first; an empty list is a pass. Raises MissingTool only."""
@@ -202,6 +205,9 @@ class Simulator(Plugin):
     def ready(self) -> None:
         """Called before a batch starts. Raises MissingTool where a program lacks; the default needs none."""
         return
+
+    def load(self) -> None:
+        """Begin now what the first call would wait for; called beside other work, and most have nothing to do."""
 
     @abstractmethod
     def execute(self, scenario: Scenario, network: RoadNetwork) -> Execution:

@@ -24,6 +24,7 @@ from flows.batch.case_order import Order, is_worker, run_order
 from flows.batch.step_tasks import step_tasks
 from flows.case.run_case import Ending
 from flows.case.steps import AT_ONCE, Held
+from sgcad_core.case.verdict_told import verdict_sentence
 from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.result import counts_of
 
@@ -66,7 +67,7 @@ def state_of(ending: Ending, data: Held[Any] | None = None) -> State[Any]:
     if account and account["verdict"] != "whole":
         name = "Lacking" if account["verdict"] == "lacking" else "Doubted"
         counted = f"{account['lacking']} of {account['told']} things told are lacking"
-        return Completed(name=name, message=str(account.get("sentence") or counted), data=data)
+        return Completed(name=name, message=verdict_sentence(ending.result) or counted, data=data)
     return Completed(name=status.capitalize(), message=reason, data=data)
 
 

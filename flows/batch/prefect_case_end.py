@@ -33,6 +33,7 @@ from flows.case.run_case import Ending
 from flows.case.steps import Held
 from flows.case_files import case_links
 from flows.case_files.case_links import Served
+from sgcad_core.case.verdict_told import verdict_sentence
 from sgcad_core.result import counts_of
 
 ARTIFACTS_S = 20.0
@@ -175,8 +176,8 @@ def markdown(folder: Path, result: Mapping[str, Any], served: Served) -> str:
 
 def _verdict(result: Mapping[str, Any]) -> str:
     account = counts_of(result)
-    if account and account.get("sentence"):
-        return f"{result['status']}: {account['sentence']}"
+    if account and (said := verdict_sentence(result)):
+        return f"{result['status']}: {said}"
     lacking = case_in_words.lacking_counted(account)
     return f"{result['status']}, {lacking}" if lacking else str(result["status"])
 

@@ -22,7 +22,7 @@ from flows.batch.tracking.track_cases import OnEnding
 from flows.case.run_case import Ending
 from flows.server import Server, ServerLost, prefect_server
 from sgcad_core import settings
-from sgcad_core.interfaces import Backbone
+from sgcad_core.interfaces import Backbone, Simulator, Validator
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,8 @@ def evaluate_alone(
     stop = Stop()
     with watched(on_step, stop):
         try:
+            if len(left) == 1:
+                threading.Thread(target=_load_programs, args=(left[0],), daemon=True, name="programs").start()
             _load_model(left)
             if len(left) == 1:
                 on_ending(left[0], _here(batch, left[0]), "")
@@ -139,6 +141,14 @@ def _load_model(jobs: Sequence[Job]) -> None:
 def _load(model: Backbone) -> None:
     with suppress(Exception):  # the first question reports the fault with its case
         model.load()
+
+
+def _load_programs(job: Job) -> None:
+    """Start what checks and plays a case in processes of its own, while its report is read."""
+    programs: tuple[Validator | Simulator, ...] = (*job.config.validators, job.config.simulator)
+    for plugin in programs:
+        with suppress(Exception):  # the first call reports the fault with its case
+            plugin.load()
 
 
 def _processor_s(server: Server) -> float | None:

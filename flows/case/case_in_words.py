@@ -10,6 +10,7 @@ from typing import Any
 
 from sgcad_core.account import Disagreement
 from sgcad_core.account.records import is_of_map
+from sgcad_core.case.verdict_told import verdict_sentence
 from sgcad_core.result import as_declared, counts_of
 
 MAX_LINES = 12
@@ -40,7 +41,7 @@ def account_lines(result: Mapping[str, Any]) -> list[str]:
     account = counts_of(result)
     if account is None:
         return []
-    found = [account["sentence"]] if account.get("sentence") else []
+    found = [said] if (said := verdict_sentence(result)) else []
     found += [
         f"told {account['told']}, has {account['has']}, lacking {account['lacking']}, assumed {account['assumed']}"
     ]

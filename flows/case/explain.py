@@ -15,10 +15,10 @@ from pydantic import ValidationError
 
 from sgcad_core.account import Disagreement
 from sgcad_core.case.records import Conflict, CrashReport, Fact
+from sgcad_core.case.verdict_told import verdict_sentence
 from sgcad_core.errors import BadInput
 from sgcad_core.records.timeline import Act
 from sgcad_core.registry import plugin_class
-from sgcad_core.result import counts_of
 
 _SHOWN = 20
 """Most conflicts of an attempt that are listed."""
@@ -44,7 +44,7 @@ def _of_run(folder: Path) -> str:
             f"{folder}: result.json tells no facts ({type(fault).__name__}): run the case again with this version"
         ) from fault
     title = f"{result['case']} ({result['config']})"
-    if verdict := (counts_of(result) or {}).get("sentence"):
+    if verdict := verdict_sentence(result):
         title += f"\n{verdict}"
     told = account(title, places, facts, acts)
     return "\n".join([told, *_disputed(result.get("disagreements") or ()), *_conflicts(folder)])

@@ -67,13 +67,14 @@ def _given(sets: list[str] | tuple[str, ...]) -> dict[str, object]:
 def _told(revised: Revised) -> list[str]:
     """The result of a revision in lines for people."""
     from flows.terminal import escape_plain
-    from sgcad_core.result import as_declared, counts_of
+    from sgcad_core.case.verdict_told import verdict_sentence
+    from sgcad_core.result import as_declared
 
     result = revised.result
     as_told = {True: ", as declared", False: ", not as declared", None: ""}[as_declared(result)]
     end = f"{result['case']}: {result['status']}{as_told}" + (f" ({result['reason']})" if result["reason"] else "")
     lines = [end if revised.changed else f"{end}; nothing was changed: the facts had these values already"]
-    lines += [verdict] if (verdict := (counts_of(result) or {}).get("sentence")) else []
+    lines += [verdict] if (verdict := verdict_sentence(result)) else []
     lines += [f"  {edit.line()}" for edit in revised.edits] or ["  no fact is a person's"]
     findings = {finding.line(): None for said in revised.findings.values() for finding in said}
     lines += [f"  {line}" for line in findings]

@@ -22,6 +22,7 @@ from flows.player import overview_png
 from flows.player.player_data import COLORS, TRAFFIC_COLOR
 from flows.player.road_shapes import drawing_of
 from sgcad_core.case.records import ActorInfo, Trajectory
+from sgcad_core.case.verdict_told import verdict_sentence
 from sgcad_core.errors import MissingTool
 from sgcad_core.geometry.plane import Box, corners
 from sgcad_core.system.pictures import opened
@@ -41,7 +42,11 @@ MARGIN_M, LEAST_M, MOST_M = 12.0, 25.0, 55.0
 INK, PALE, PAPER = "#1d2125", "#5b6067", "#ffffff"
 _VERDICT = {"whole": "#1b7f4b", "lacking": "#b3261e", "contradicts": "#b3261e"}
 _DOUBT = "#9a6700"
+_FREE_PX = 60
+"""So far from other vehicles a name is out of their way."""
 _REPORT_LINES, _REPORT_CHARS = 17, 62
+_SPEEDS_TOP, _SPEEDS = 50 + 19 * _REPORT_LINES + 14, 5
+"""Pixels from the top to the speeds, and of how many actors they are told."""
 
 
 def film(folder: Path, out: Path, kinds: Sequence[str], fps: int) -> list[Path]:
@@ -153,10 +158,17 @@ class Shots:
             pen.text((left, 50 + 19 * k), line, INK, _font(13))
         self._write_verdict(pen, left)
 
+    @property
+    def verdict_lines(self) -> list[str]:
+        """The verdict as far as there is room for it below the speeds."""
+        room = SIDE - 28 - (_SPEEDS_TOP + 28 + 20 * len(self.case.script.trajectories[:_SPEEDS]))
+        said = verdict_sentence(self.case.result)
+        return textwrap.wrap(said, _REPORT_CHARS, max_lines=room // 19, placeholder=" ...")
+
     def _write_verdict(self, pen: ImageDraw.ImageDraw, left: int) -> None:
         account = self.case.result.get("account") or {}
         color = _VERDICT.get(account.get("verdict", ""), _DOUBT)
-        lines = textwrap.wrap(account.get("sentence", ""), _REPORT_CHARS)[:4]
+        lines = self.verdict_lines
         top = SIDE - 20 - 19 * len(lines)
         pen.rectangle((left - 10, top - 2, left - 6, SIDE - 20), fill=color)
         for k, line in enumerate(lines):
@@ -172,6 +184,7 @@ class Shots:
             self._draw_background(pen, info, track, t_s)
         for k, track in enumerate(script.trajectories):
             self._draw_actor(pen, script.info(track.actor), track, COLORS[k % len(COLORS)], t_s)
+        self._write_names(pen, t_s)
         beside = (SIDE, 0, SIDE + PANEL, SIDE)
         picture.paste(self._ground.crop(beside), beside)  # over what lies beside the plan view
         self._write_speeds(pen, t_s)
@@ -192,19 +205,35 @@ class Shots:
         box = corners(Box(x, y, heading, info.length_m, info.width_m))
         pen.polygon([self._pixel(*point) for point in box], fill=color, outline=PAPER)
         pen.line([self._pixel(*box[0]), self._pixel(*box[3])], fill=INK, width=2)  # its front
-        px, py = self._pixel(x, y)
-        beside = 14 + round(info.width_m * SIDE / (4 * self._frame[1]))
-        up, right = -math.sin(heading + math.pi / 2), math.cos(heading + math.pi / 2)
-        at = px + beside * right, py + beside * up
-        pen.text(at, info.id, INK, _font(13, bold=True), anchor="mm", stroke_width=2, stroke_fill=PAPER)
+
+    def _write_names(self, pen: ImageDraw.ImageDraw, t_s: float) -> None:
+        for name, at in self.name_places(t_s).items():
+            pen.text(at, name, INK, _font(13, bold=True), anchor="mm", stroke_width=2, stroke_fill=PAPER)
+
+    def name_places(self, t_s: float) -> dict[str, tuple[float, float]]:
+        """Pixels of each actor's name: on the side of its box that is farthest from the other actors."""
+        tracks, scale = self.case.script.trajectories, SIDE / (4 * self._frame[1])  # pixels of half a metre
+        poses = [track.pose[min(round(t_s / STEP_S), len(track.t_s) - 1)] for track in tracks]
+        middles = [np.array(self._pixel(x, y)) for x, y, _ in poses]
+        found = {}
+        for k, track in enumerate(tracks):
+            info, others = self.case.script.info(track.actor), [at for i, at in enumerate(middles) if i != k]
+            places = []
+            for quarter, reach_m in enumerate((info.width_m, info.length_m) * 2, start=1):
+                turn, away = float(poses[k][2]) + quarter * math.pi / 2, 14 + round(reach_m * scale)
+                places.append(middles[k] + away * np.array((math.cos(turn), -math.sin(turn))))
+            free = [min((float(np.hypot(*(at - one))) for one in others), default=math.inf) for at in places]
+            best = next(at for at, room in zip(places, free, strict=True) if room >= min(max(free), _FREE_PX))
+            found[info.id] = float(best[0]), float(best[1])
+        return found
 
     def _write_speeds(self, pen: ImageDraw.ImageDraw, t_s: float) -> None:
-        left, top = SIDE + 20, 50 + 19 * _REPORT_LINES + 14
+        left, top = SIDE + 20, _SPEEDS_TOP
         pen.text((left, top), f"{t_s:5.2f} s", INK, _font(15, bold=True))
         if (told := self._contact) and t_s >= told["t_s"]:
             said = f"{told['actor']} {told['actor_area']} meets {told['other']} {told['other_area']}"
             pen.text((left + 90, top), said, overview_png.RED, _font(15, bold=True))
-        for k, track in enumerate(self.case.script.trajectories[:5]):
+        for k, track in enumerate(self.case.script.trajectories[:_SPEEDS]):
             row = min(round(t_s / STEP_S), len(track.t_s) - 1)
             speed = float(track.speed_mps[row])
             y = top + 28 + 20 * k

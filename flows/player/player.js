@@ -227,7 +227,7 @@
   function drawContact() {
     if (!contact || contact.x === undefined || pane.actors !== data.actors) return;
     const [x, y] = toScreen(contact.x, contact.y), since = now - contactStep, hit = since >= -0.5;
-    const still = Math.min(Math.max(1.1 * box.scale, 5), 10), close = box.scale > 20, big = hit && !close ? still + 8 * Math.max(0, 1 - since * step / 0.6) : close ? 7 : 6;
+    const still = Math.min(Math.max(1.1 * box.scale, 5), 10), close = box.scale > 20, big = hit && !close ? still + 3 * Math.max(0, 1 - since * step / 0.6) : close ? 7 : 6;
     ink.beginPath();
     for (let i = 0; i < 20; i++) {
       const r = i % 2 ? big * 0.45 : big, a = (i * Math.PI) / 10;
@@ -236,7 +236,7 @@
     ink.closePath();
     if (lit.has("contact")) { ink.strokeStyle = COLOR.halo; ink.lineWidth = 8; ink.stroke(); }
     ink.lineWidth = 1.5; ink.strokeStyle = hit ? "#fff" : COLOR.hit;
-    if (hit) { ink.fillStyle = COLOR.hit; ink.globalAlpha = close ? 0.55 : 0.92; ink.fill(); ink.globalAlpha = 1; }
+    if (hit) { ink.fillStyle = COLOR.hit; ink.globalAlpha = 0.55; ink.fill(); ink.globalAlpha = 1; }
     ink.stroke();
   }
   function draw() {
@@ -278,6 +278,8 @@
     const wide = ink.measureText(text).width / 2 + 7; ink.fillStyle = "#fff"; ink.beginPath(); ink.roundRect((x + u) / 2 - wide, (y + v) / 2 - 11, 2 * wide, 22, 6); ink.fill(); ink.fillStyle = "#7209b7"; ink.fillText(text, (x + u) / 2, (y + v) / 2);
   }
   const guessed = (id) => (data.facts[id] || []).some((f) => f.name === "start_speed_mph" && f.status === "default");
+  const arriving = contact ? Math.max(Math.ceil(contactStep) - 1, 0) : null;   // the last step before they touch: from the contact on, speeds are pushed ones
+  const speedNow = (speeds) => speeds[Math.min(arriving !== null && now > arriving && now <= contactStep ? arriving : Math.round(now), speeds.length - 1)];
   function state() {
     $("time").value = now;
     $("clock").textContent = `${(now * step).toFixed(2)} / ${(last * step).toFixed(2)} s`;
@@ -285,7 +287,7 @@
     $("follow").setAttribute("aria-pressed", follow);
     [...$("legend").children].forEach((row, i) => {
       const p = pose(data.actors[i], now), lying = Math.cos(p.roll) < 0.5 ? ` · ${lies(p.roll)}` : "";
-      row.lastChild.textContent = `${data.actors[i].type} · ${speedText(p.speed)}${guessed(data.actors[i].id) ? " (assumed)" : ""}${lying}`;
+      row.lastChild.textContent = `${data.actors[i].type} · ${speedText(speedNow(data.actors[i].speed))}${guessed(data.actors[i].id) && !(now > contactStep && contact) ? " (assumed)" : ""}${lying}`;
     });
     plotCursor();
     const metres = [200, 100, 50, 20, 10, 5, 2].find((m) => m * box.scale < 130) || 1;

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from flows.player.player_highlights import MARK_WORDS, facts_by_thing, road_along, road_axes, sentences_of
+from flows.player.player_highlights import facts_by_thing, road_along, road_axes, sentences_of
 from flows.player.road_shapes import Drawing, drawing_of
+from flows.player.sentence_marks import MARK_WORDS
 from flows.player.signals_shown import SignalShown, signals_shown
 from sgcad_core.case.records import ActorInfo, CrashReport, Floats, Scenario, Trajectory
 from sgcad_core.case.traffic import Background

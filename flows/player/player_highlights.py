@@ -9,17 +9,15 @@ from typing import Any
 import numpy as np
 
 from flows.player.road_shapes import Strip
+from flows.player.sentence_marks import told_sentences
 from sgcad_core.case.records import CrashReport
 from sgcad_core.reading.text.compass import WORDS, angle_of
 from sgcad_core.reading.text.traced_text import placed, shown
 
 ALONG_DEG = 20.0
 """A lane within this of a road's axis is taken for that road's."""
-MARKS = ("contradicts", "unread", "lacks")
-"""How a sentence was not read as it stands, the gravest first: the report says something else as well; something of it
-was not read; the scenario lacks something that it tells."""
-MARK_WORDS = {"contradicts": "contradicted", "unread": "not read", "lacks": "not in the scenario"}
-"""The same in words, which stand beside the color."""
+BENT_DEG = 30.0
+"""A lane whose ends run off its axis by more goes around a circle, not along a road."""
 _COMPASS = {point: angle_of(point) for point in WORDS.values()}
 Row = Mapping[str, Any]
 
@@ -36,39 +34,16 @@ def thing_of(field: str) -> str:
 
 
 def sentences_of(report: CrashReport, facts: Iterable[Row], items: Iterable[Row] = ()) -> list[dict[str, Any]]:
-    """Sentences that tell facts or that the account names: [start, end) in the narrative as shown, the things that
-    they tell of, and how they were read (`MARKS`; "read" where the account has nothing against them)."""
+    """Sentences that tell facts or that the account names: [start, end) in the narrative as shown, [of, upto) as
+    written, the things that they tell of, and how they were read (`sentence_marks`)."""
     text = placed(report.narrative, report.places)
-    things: dict[tuple[int, int], dict[str, None]] = {}
-    for fact in facts:
-        if fact["start"] is not None and (thing := thing_of(fact["field"])):
-            things.setdefault((fact["start"], fact["end"]), {})[thing] = None
-    marks = _marks(items)
-    for place in marks:
-        if not any(start < place[1] and place[0] < end for start, end in things):
-            things[place] = {}
-    spans = [(shown(text, *place), place, list(told)) for place, told in sorted(things.items())]
     return [
-        {"start": a, "end": b, "of": place[0], "things": told, "mark": _gravest(place, marks)}
-        for (a, b), place, told in spans
-        if b > a
-    ]
-
-
-def _marks(items: Iterable[Row]) -> dict[tuple[int, int], str]:
-    """Places of the narrative with the gravest thing that the account says of them."""
-    found: dict[tuple[int, int], str] = {}
-    for item in items:
-        if item["kind"] in MARKS and item["start"] is not None:
-            place = item["start"], item["end"]
-            found[place] = min(found.get(place, item["kind"]), item["kind"], key=MARKS.index)
-    return found
-
-
-def _gravest(place: tuple[int, int], marks: Mapping[tuple[int, int], str]) -> str:
-    """The mark of a sentence: the gravest of those that lie in it."""
-    within = [mark for (start, end), mark in marks.items() if start < place[1] and place[0] < end]
-    return min(within, key=MARKS.index, default="read")
+        {
+            "start": told.start, "end": told.end, "of": told.of, "upto": told.upto, "mark": told.mark,
+            "things": list(dict.fromkeys(thing for field in told.fields if (thing := thing_of(field)))),
+        }
+        for told in told_sentences(facts, items, lambda place: shown(text, *place))
+    ]  # fmt: skip
 
 
 def facts_by_thing(facts: Iterable[Row]) -> dict[str, list[dict[str, Any]]]:
@@ -90,8 +65,10 @@ def road_axes(facts: Iterable[Row]) -> dict[str, float]:
 
 def road_along(strip: Strip, axes: Mapping[str, float]) -> str:
     """The road that a lane runs along; "" where it runs along none."""
-    dx, dy = np.asarray(strip.points[-1]) - np.asarray(strip.points[0])
-    heading = math.atan2(dy, dx)
+    points = np.asarray(strip.points)
+    heading, *ends = (math.atan2(b[1] - a[1], b[0] - a[0]) for a, b in (points[[0, -1]], points[:2], points[-2:]))
+    if any(abs(math.remainder(end - heading, 2 * math.pi)) > math.radians(BENT_DEG) for end in ends):
+        return ""
     off = {name: abs(math.remainder(heading - axis, math.pi)) for name, axis in axes.items()}
     near = min(off, key=lambda name: off[name], default="")
     return near if near and math.degrees(off[near]) <= ALONG_DEG else ""

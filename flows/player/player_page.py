@@ -9,12 +9,13 @@ from __future__ import annotations
 import html
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from flows.player.player_data import View, traffic_shown
+from flows.player.sentence_marks import Place
 from sgcad_core.case.traffic import Background
 
 HERE = Path(__file__).parent
@@ -36,6 +37,17 @@ def page_among(page: str, traffic: Background) -> str:
     if found is None:
         raise ValueError("it has no data of a player")
     return _page(json.loads(found[1]) | {"traffic": traffic_shown(traffic)})
+
+
+def shown_in(page: str) -> Callable[[Place], Place]:
+    """Where the sentences that a player's page tells of stand in its narrative; as written where it tells of none."""
+    found = DATA.search(page)
+    try:
+        told = json.loads(found[1])["sentences"] if found else ()
+        spans = {int(s["of"]): (int(s["start"]), int(s["end"])) for s in told}
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
+        spans = {}
+    return lambda place: spans.get(place[0], place)
 
 
 def _page(shown: Mapping[str, Any]) -> str:

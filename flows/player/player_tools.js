@@ -29,7 +29,7 @@
   function fillSpeeds() {
     const table = $("speeds"), change = (data.metrics.exact || {}).delta_v_mps || {};
     table.replaceChildren();
-    const at = contact ? Math.max(Math.ceil(momentStep) - 1, 0) : moment ? Math.round(momentStep) : null;   // the last step before they touch
+    const at = contact ? arriving : moment ? Math.round(momentStep) : null;   // the last step before they touch
     row(table, ["", "at the start", ...(at === null ? [] : ["1 s before", contact ? "at contact" : "at the closest"]), ...(contact ? ["delta-v"] : [])], true);
     for (const a of data.actors) {
       const told = (k) => speedText(a.speed[Math.min(Math.max(k, 0), a.speed.length - 1)]);
@@ -76,9 +76,11 @@
   function plotCursor() {                                // where the clock is, and what holds there
     for (const { name, lines, unitOf, line, caption, drawn, most } of plots) {
       const k = Math.min(Math.round(now), last), all = lines();
-      const said = (dashed) => all.filter((l) => Boolean(l[2]) === dashed).map(([, v]) => v[Math.min(k, v.length - 1)]).map((v) => v === null ? "–" : v.toFixed(v < 10 ? 1 : 0)).join(" / ");
+      const whole = unitOf() === "mph" || unitOf() === "km/h", at = (v) => most < Infinity ? v[Math.min(k, v.length - 1)] : speedNow(v);
+      const said = (dashed) => all.filter((l) => Boolean(l[2]) === dashed).map(([, v]) => at(v)).map((v) => v === null || v === undefined ? "–" : v.toFixed(!whole && v < 10 ? 1 : 0)).join(" / ");
       const beyond = all.some((l) => l[2]) ? `, ${other.name} ${said(true)}` : "";
-      caption.textContent = `${name}: ${said(false)}${beyond} ${unitOf()}${near0 && most < Infinity ? ` (${near0.pair.join(" and ")})` : ""}`;
+      caption.textContent = `${name}: ${said(false)}${beyond} ${unitOf()}${near0 && most < Infinity ? ` (${near0.pair.join("–")})` : ""}`;
+      caption.title = caption.textContent;
       if (!drawn) continue;
       const pen = line.getContext("2d"), x = (now / Math.max(last, 1)) * line.width;
       pen.putImageData(drawn, 0, 0);

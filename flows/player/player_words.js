@@ -101,7 +101,7 @@
     const differing = disputed.map((d) => ({ start: d.start, text: `${d.field}: ${d.kept} (${d.kept_by}), but the ${d.by} read ${d.other}` }));
     for (const item of [...of("lacks"), ...of("unread"), ...of("contradicts"), ...of("guessed"), ...differing]) {
       const line = make("li"), words = item.reason ? `${item.text}: ${item.reason}` : item.text;
-      const sentence = data.sentences.find((s) => s.of === item.start);
+      const sentence = data.sentences.find((s) => s.of <= item.start && item.start < s.upto);
       if (sentence) { const told = make("button", words); told.type = "button"; told.onclick = () => point(sentence.things, sentence); line.append(told); } else line.append(words);
       $("lacks").append(line);
     }
@@ -135,9 +135,10 @@
   data.sentences.forEach((s, k) => {
     tell($("narrative"), data.narrative.slice(read, s.start), read);
     const span = pointable(make("span", "", { className: "told", tabIndex: 0 }), s.things, s);
-    if (s.mark && s.mark !== "read") { span.classList.add(s.mark); span.title = data.marked[s.mark]; }
+    if (s.mark) span.classList.add(s.mark);
+    if (data.marked[s.mark]) span.title = data.marked[s.mark];
     span.dataset.k = k; tell(span, data.narrative.slice(s.start, s.end), s.start); $("narrative").append(span);
-    if (s.mark && s.mark !== "read") span.append(make("sup", data.marked[s.mark], { className: "marked" }));
+    if (data.marked[s.mark]) span.append(make("sup", data.marked[s.mark], { className: "marked" }));
     read = s.end;
   });
   tell($("narrative"), data.narrative.slice(read), read);

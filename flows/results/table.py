@@ -75,6 +75,12 @@ class Table:
         """Whether any row has a published figure for it, so that it gets a column of its own."""
         return any(measure.name in row.published for row in self.rows)
 
+    @property
+    def alike(self) -> bool:
+        """Whether its arms do not differ in any figure; never with a single arm."""
+        told = [{name: cell and cell.value for name, cell in row.cells.items()} for row in self.rows]
+        return len(told) > 1 and all(cells == told[0] for cells in told)
+
 
 @dataclass(frozen=True)
 class Tables:
@@ -87,11 +93,14 @@ class Tables:
 
 
 def tables_of(study: Study) -> Tables:
-    """All tables with a value; the remarks say which are left out."""
+    """All tables with a value, those in which arms differ first; the remarks say which are left out."""
     values = study_values(study)
     made = [_table(study, values, layout) for layout in LAYOUTS]
-    tables = tuple(t for t in [*made, _refusals(study, values)] if t is not None)
-    return Tables(study, values, tables, tuple(_remarks(study)))
+    tables = [t for t in [*made, _refusals(study, values)] if t is not None]
+    last = [t.title for t in tables if t.alike]
+    moved = [f"In these tables the arms do not differ, so they stand last: {'; '.join(last)}."] if last else []
+    progress, *more = _remarks(study)
+    return Tables(study, values, tuple(sorted(tables, key=lambda t: t.alike)), (progress, *moved, *more))
 
 
 def reference_of(study: Study) -> str | None:

@@ -41,6 +41,10 @@ class LibSumo(Simulator):
     longest_s: float = Field(60.0, gt=0, le=600)
     """Longest run of a route file, in simulated seconds."""
 
+    def load(self) -> None:
+        """Start SUMO's process, the one that replays."""
+        _worker("replay").begin()
+
     def execute(self, scenario: Scenario, network: RoadNetwork) -> Execution:
         """Replay the .xosc, or run the routes, on the net.xml. Raises SimulationFailed."""
         if not network.net_xml:

@@ -12,6 +12,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from sgcad_core.case.verdict_told import verdict_sentence
+
 GROUP = "0_headline"
 HEADLINE: Mapping[str, str] = {
     "collision_realised": "the told contact is the first one that happens: who, whom, and both areas; more is better",
@@ -60,7 +62,7 @@ def case_note(case_dir: Path, result: Mapping[str, Any], page: str) -> str:
     lacks = [item["text"] for item in account.get("items") or () if item["kind"] == "lacks"]
     lines = [f"**{_plain(result['status'])}** {_plain(in_words(result).partition(': ')[2])[:500]}".rstrip()]
     if account.get("told"):
-        lines += [_plain(account["sentence"])] if account.get("sentence") else []
+        lines += [_plain(said)] if (said := verdict_sentence(result)) else []
         told = f"told {account['told']}, in the scenario {account['has']}, lacking {account['lacking']}, " \
                f"assumed {account['assumed']}"  # fmt: skip
         lines.append(told)

@@ -22,6 +22,7 @@ from plugins.tracker.mlflow_store import CONFIG, NOTE, Store, repository, store_
 from plugins.tracker.mlflow_trace import log_trace
 from plugins.tracker.mlflow_training import log_training
 from sgcad_core.case.tracker_arm import Arm
+from sgcad_core.case.verdict_told import verdict_sentence
 from sgcad_core.interfaces import Tracker
 
 UPDATE_S, UPDATE_SHARE = 10.0, 0.02
@@ -135,9 +136,9 @@ def _steps(case_dir: Path, result: Mapping[str, Any]) -> dict[int, dict[str, flo
 
 def _tags(config_name: str, result: Mapping[str, Any]) -> dict[str, str]:
     """Tags of a case's run and of its trace."""
-    account = result.get("account") or {}
-    tags = {CONFIG: config_name, "sgcad.status": result["status"], "sgcad.account": account.get("verdict", "none")}
-    return tags | ({"sgcad.verdict": account["sentence"]} if account.get("sentence") else {})
+    word = (result.get("account") or {}).get("verdict", "none")
+    tags = {CONFIG: config_name, "sgcad.status": result["status"], "sgcad.account": word}
+    return tags | ({"sgcad.verdict": said} if (said := verdict_sentence(result)) else {})
 
 
 def _pictures(case_dir: Path) -> dict[str, Path]:

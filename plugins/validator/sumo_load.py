@@ -24,6 +24,10 @@ class SumoLoad(Validator):
     timeout_s: float = 30.0
     """Longest wait for SUMO, seconds."""
 
+    def load(self) -> None:
+        """Start SUMO's process."""
+        _WORKER.begin()
+
     def findings(self, artifact: RoadNetwork | Scenario, evidence: Evidence) -> list[Finding]:
         """Schema faults, else at most one finding; none for a network without .net.xml."""
         if not isinstance(artifact, RoadNetwork) or artifact.net_xml is None:

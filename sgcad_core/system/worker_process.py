@@ -1,9 +1,10 @@
 """A function in a process of its own, which may die without ending the batch.
 
     worker = Worker("plugins.simulator.libsumo:replay")       # starts nothing yet
+    worker.begin()                                             # may be left out: starts it, and waits for nothing
     result = worker.call(net_xml, steps, timeout_s=30)         # replay(net_xml, steps) over there
 
-The process starts at the first call and serves all later ones, since imports (libsumo: 0.5 s) are what
+The process starts at `begin` or at the first call and serves all later ones, since imports (libsumo: 0.5 s) are what
 costs; a call after a death starts a new one. Arguments and results are pickled. An SgcadError that the
 function raises is raised here; any other end of the process (signal, uncaught exception) is ProcessDied, a
 timeout SimulationFailed, with the last lines of its error stream. Thread-safe: calls of one worker wait in line.
@@ -63,6 +64,12 @@ class Worker:
         if done:
             return result
         raise result
+
+    def begin(self) -> None:
+        """Start the process without waiting for it, so that the first call finds it ready."""
+        with self._lock:
+            if not self._killed:
+                self._alive()
 
     def said(self) -> str:
         """What the process wrote to its error stream since the last call began (at most 2000 characters)."""

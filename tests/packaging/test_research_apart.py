@@ -13,8 +13,10 @@ PACKAGES = {"prefect_dask": "prefect-dask", "PIL": "pillow", "yaml": "pyyaml", "
 """Packages that are installed under other names than they are imported by."""
 OF_PREFECT = {"asyncpg", "websockets"}
 """Dependencies of Prefect."""
-OWN_ENVIRONMENT = {"qc_baselib", "qc_opendrive", "qc_openscenario", "commonroad"}
-"""ASAM's checkers, for which `make qc` makes an environment of their own, and CommonRoad's reader, which needs one."""
+OWN_ENVIRONMENT = {
+    "qc_baselib", "qc_opendrive", "qc_openscenario", "commonroad", "commonroad_dc", "metadrive", "antlr4", "srunner",
+}  # fmt: skip
+"""ASAM's checkers, for which `make qc` makes an environment of their own, and other tools' readers, which need one."""
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 

@@ -8,8 +8,10 @@ import pytest
 from sgcad_core.settings import ROOT
 
 COMMAND = re.compile(r'^if __name__ == "__main__":', re.MULTILINE)
-OWN_ENVIRONMENT = {"research.checks.asam_checkers", "research.checks.commonroad_reader"}
-"""Run in environments of their own: that of `make qc`, and one with an older protobuf."""
+OWN_ENVIRONMENT = {
+    f"research.checks.{name}" for name in ("asam_checkers", "commonroad_reader", "dsl_reader", "scenarionet_reader")
+}
+"""Run in environments of their own: that of `make qc`, and those of other tools' readers."""
 COMMANDS = sorted(
     name
     for file in (ROOT / "research").rglob("*.py")

@@ -6,8 +6,6 @@ road as drawn), "contact", "junction", "conditions".
 
 from __future__ import annotations
 
-import json
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,9 +15,9 @@ from flows.desk.views.attempts import Attempt, attempts_of
 from flows.desk.views.field_words import name_of, shown
 from flows.desk.views.folder_files import FILES, diagrams_of, is_there, odd_files, text_of
 from flows.desk.views.list_rows import account_counts, contact_of, disagreements, doubts_of, notes_of
-from flows.player.player_highlights import MARK_WORDS, MARKS
-
-_DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
+from flows.player.player_page import shown_in
+from flows.player.sentence_marks import MARK_WORDS, ToldSentence, sentence_at, told_sentences
+from sgcad_core.case.verdict_told import verdict_sentence
 
 
 @dataclass(frozen=True)
@@ -30,7 +28,7 @@ class Piece:
     number: int = -1
     things: tuple[str, ...] = ()
     mark: str = ""
-    """What the account says against it (`player_highlights.MARKS`); "" for nothing."""
+    """What the account says against it (`sentence_marks.MARKS`); "read" for nothing."""
 
     @property
     def marked(self) -> str:
@@ -102,12 +100,11 @@ class CasePage:
 def page_of(folder: Path, result: Mapping[str, Any]) -> CasePage:
     """Read a case's folder. What is missing in it is left out."""
     facts = list(result.get("facts") or ())
-    spans = spans_of(folder, result)
-    narrative = text_of(folder, "report.txt")
-    pieces, numbers = pieces_of(narrative, spans, facts, (result.get("account") or {}).get("items", ()))
+    told = told_of(result, text_of(folder, "player.html"))
+    pieces, sentences = pieces_of(text_of(folder, "report.txt"), told)
     return CasePage(
-        pieces=pieces, groups=tuple(groups_of(facts, numbers, doubts_of(result))), counts=account_counts(result),
-        account=account_of(result, numbers), notes=tuple(_note(note, numbers) for note in notes_of(result)),
+        pieces=pieces, groups=tuple(groups_of(facts, sentences, doubts_of(result))), counts=account_counts(result),
+        account=account_of(result, sentences), notes=tuple(_note(note, sentences) for note in notes_of(result)),
         attempts=tuple(attempts_of(folder)), diagrams=len(diagrams_of(folder)),
         files=tuple((name, about) for name, about in FILES.items() if is_there(folder, name)),
         player=is_there(folder, "player.html"), verdict=verdict_of(result),
@@ -119,7 +116,7 @@ def verdict_of(result: Mapping[str, Any]) -> str:
     """The result in a line: the reason, the verdict of its account, or of an older result the contact."""
     if result["status"] != "generated":
         return str(result.get("reason") or result["status"])
-    if said := (result.get("account") or {}).get("sentence"):
+    if said := verdict_sentence(result):
         return f"{said[0].upper()}{said[1:]}"
     collision, near = result.get("collision") or {}, result.get("near_crash")
     if near:
@@ -131,54 +128,22 @@ def verdict_of(result: Mapping[str, Any]) -> str:
 
 
 # ------------------------------------------------------------------ the report
-def spans_of(folder: Path, result: Mapping[str, Any]) -> dict[int, tuple[int, int]]:
-    """Positions of sentences in the shown narrative: begin in the original text -> [begin, end).
-
-    The player knows it where parts of the report were taken out; else both are the same.
-    """
-    spans = {int(s["start"]): (int(s["start"]), int(s["end"])) for s in result.get("sentences") or ()}
-    found = _DATA.search(text_of(folder, "player.html"))
-    try:
-        told = json.loads(found[1])["sentences"] if found else ()
-        return spans | {int(s["of"]): (int(s["start"]), int(s["end"])) for s in told}
-    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
-        return spans
+def told_of(result: Mapping[str, Any], player: str) -> list[ToldSentence]:
+    """The sentences of a case with their places in the report as shown, which the page of its player knows."""
+    items = (result.get("account") or {}).get("items") or ()
+    return told_sentences(result.get("facts") or (), items, shown_in(player))
 
 
-def pieces_of(
-    narrative: str,
-    spans: Mapping[int, tuple[int, int]],
-    facts: Iterable[Mapping[str, Any]],
-    items: Iterable[Mapping[str, Any]] = (),
-) -> tuple[tuple[Piece, ...], dict[int, int]]:
-    """The narrative cut into sentences that tell facts, or that the account has something against, and what stands
-    between; the number of each by its begin."""
-    marks = _marks(spans, items)
-    things: dict[int, dict[str, None]] = {begin: {} for begin in marks}
-    for fact in facts:
-        if fact.get("start") in spans:
-            things.setdefault(fact["start"], {}).update(dict.fromkeys([thing_of(fact["field"])]))
-    pieces, numbers, at = [], dict[int, int](), 0
-    for begin, told in sorted(things.items(), key=lambda item: spans[item[0]]):
-        start, end = spans[begin]
-        if not at <= start < end <= len(narrative):
-            continue
-        numbers[begin] = len(numbers)
-        pieces += [Piece(narrative[at:start])] if start > at else []
-        pieces.append(Piece(narrative[start:end], numbers[begin], tuple(filter(None, told)), marks.get(begin, "")))
-        at = end
-    return (*pieces, Piece(narrative[at:])), numbers
-
-
-def _marks(spans: Mapping[int, tuple[int, int]], items: Iterable[Mapping[str, Any]]) -> dict[int, str]:
-    """By the begin of a sentence the gravest thing that the account says of it."""
-    found: dict[int, str] = {}
-    for item in items:
-        within = [begin for begin in spans if item.get("start") is not None and begin <= item["start"]]
-        if item["kind"] in MARKS and within:
-            begin = max(within)
-            found[begin] = min(found.get(begin, item["kind"]), item["kind"], key=MARKS.index)
-    return found
+def pieces_of(narrative: str, told: Iterable[ToldSentence]) -> tuple[tuple[Piece, ...], list[ToldSentence]]:
+    """The narrative cut into its sentences and what stands between, and the sentences that are numbered so."""
+    pieces, kept, at = list[Piece](), list[ToldSentence](), 0
+    for one in (t for t in told if t.end <= len(narrative)):
+        pieces += [Piece(narrative[at : one.start])] if one.start > at else []
+        things = dict.fromkeys(thing for field in one.fields if (thing := thing_of(field)))
+        pieces.append(Piece(narrative[one.start : one.end], len(kept), tuple(things), one.mark))
+        kept.append(one)
+        at = one.end
+    return (*pieces, Piece(narrative[at:])), kept
 
 
 # ------------------------------------------------------------------ facts
@@ -210,37 +175,37 @@ def order_of(thing: str) -> tuple[int, str]:
 
 
 def groups_of(
-    facts: Sequence[Mapping[str, Any]], numbers: Mapping[int, int], doubts: Sequence[Mapping[str, Any]] = ()
+    facts: Sequence[Mapping[str, Any]], told: Sequence[ToldSentence], doubts: Sequence[Mapping[str, Any]] = ()
 ) -> Iterator[Group]:
     """Facts by thing, actors and contact first; of each field the last fact, with what other readers say of it."""
     disagree, found = disagreements(facts), dict[str, list[FactRow]]()
     for fact in {fact["field"]: fact for fact in facts}.values():
-        row = _fact(fact, numbers, disagree.get(fact["field"], {}), doubts)
+        row = _fact(fact, told, disagree.get(fact["field"], {}), doubts)
         found.setdefault(thing_of(fact["field"]), []).append(row)
     for thing in sorted(found, key=order_of):
         yield Group(thing, title_of(thing), tuple(found[thing]))
 
 
 def _fact(
-    fact: Mapping[str, Any], numbers: Mapping[int, int], said: Mapping[str, Any], doubts: Sequence[Mapping[str, Any]]
+    fact: Mapping[str, Any], told: Sequence[ToldSentence], said: Mapping[str, Any], doubts: Sequence[Mapping[str, Any]]
 ) -> FactRow:
     name = str(fact["field"])
     others = ((basis, shown(name, value)) for basis, value in said.items() if basis != fact["basis"])
     return FactRow(
         field=name, name=name_of(name), value=shown(name, fact["value"]), basis=str(fact["basis"]),
-        status=str(fact["status"]), confidence=float(fact["confidence"]), sentence=numbers.get(fact.get("start"), -1),  # type: ignore[arg-type]
+        status=str(fact["status"]), confidence=float(fact["confidence"]), sentence=sentence_at(told, fact.get("start")),
         others=tuple(others), findings=tuple(str(d["text"]) for d in doubts if d.get("field") == name),
     )  # fmt: skip
 
 
 # ------------------------------------------------------------------ account, notes
-def account_of(result: Mapping[str, Any], numbers: Mapping[int, int]) -> dict[str, list[AccountLine]]:
+def account_of(result: Mapping[str, Any], told: Sequence[ToldSentence]) -> dict[str, list[AccountLine]]:
     """lacks, assumed, has: the account's items; of results without one, defaults are what is assumed."""
     kinds = "lacks", "unread", "contradicts", "guessed", "assumed", "has"
     found: dict[str, list[AccountLine]] = {kind: [] for kind in kinds}
     items = (result.get("account") or {}).get("items")
     for item in items if items is not None else _items_of_facts(result.get("facts") or ()):
-        found.setdefault(item["kind"], []).append(_line(item, numbers))
+        found.setdefault(item["kind"], []).append(_line(item, told))
     return found
 
 
@@ -252,14 +217,14 @@ def _items_of_facts(facts: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, An
             yield {"kind": "assumed", "field": fact["field"], "text": text, "reason": "not told", "start": None}
 
 
-def _line(item: Mapping[str, Any], numbers: Mapping[int, int]) -> AccountLine:
+def _line(item: Mapping[str, Any], told: Sequence[ToldSentence]) -> AccountLine:
     return AccountLine(
         str(item["text"]), str(item.get("reason") or ""), thing_of(str(item.get("field") or "")),
-        str(item.get("field") or ""), numbers.get(item.get("start"), -1),  # type: ignore[arg-type]
+        str(item.get("field") or ""), sentence_at(told, item.get("start")),
     )  # fmt: skip
 
 
-def _note(note: Mapping[str, Any], numbers: Mapping[int, int]) -> AccountLine:
+def _note(note: Mapping[str, Any], told: Sequence[ToldSentence]) -> AccountLine:
     thing = thing_of(str(note.get("field") or "")) or str(note.get("subject") or "")
     return AccountLine(str(note["text"]), str(note["kind"]), thing, str(note.get("field") or ""),
-                       numbers.get(note.get("start"), -1))  # type: ignore[arg-type]  # fmt: skip
+                       sentence_at(told, note.get("start")))  # fmt: skip

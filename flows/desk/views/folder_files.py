@@ -16,9 +16,10 @@ from sgcad_core.errors import BadInput
 from sgcad_core.system.report_files import is_regular, leads_inside, read_regular
 
 FILES: Mapping[str, str] = {
-    "scenario.xosc": "OpenSCENARIO", "scenario.rou.xml": "SUMO routes", "road.xodr": "OpenDRIVE",
-    "road.net.xml": "SUMO network", "trajectories.csv": "trajectories", "metrics.json": "metrics",
-    "traffic.rou.xml": "SUMO traffic", "result.json": "result", "report.txt": "report", "facts.yaml": "edits",
+    "scenario.xosc": "OpenSCENARIO", "ego.xosc": "OpenSCENARIO, a vehicle is yours", "road.xodr": "OpenDRIVE",
+    "scenario.rou.xml": "SUMO routes", "road.net.xml": "SUMO network", "traffic.rou.xml": "SUMO traffic",
+    "trajectories.csv": "trajectories", "metrics.json": "metrics", "result.json": "result", "report.txt": "report",
+    "facts.yaml": "edits", "crash.mp4": "film", "crash.gif": "film",
 }  # fmt: skip
 """Files of a case's folder that can be downloaded."""
 RESULT = "result.json"

@@ -18,9 +18,12 @@ from PIL import UnidentifiedImageError
 
 from flows.case.case_in_words import lacking_in_words
 from flows.player.player_data import COLORS
+from flows.player.player_page import shown_in
+from flows.player.sentence_marks import MARK_WORDS, told_sentences
 from flows.results.reading import FinishedCase, paths_of
 from flows.results.table import Tables, reference_of
 from sgcad_core.case.records import Floats
+from sgcad_core.case.verdict_told import verdict_sentence
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.xml import Element, parse_xml
 from sgcad_core.result import as_declared, counts_of
@@ -47,6 +50,7 @@ def gallery(tables: Tables, page: Path) -> dict[str, Any]:
     study = tables.study
     return {
         "arms": [{"name": a.name, "label": a.label} for a in study.arms],
+        "marked": MARK_WORDS,
         "verdicts": [label for _, label, _ in VERDICTS],
         "cases": [_case(tables, case, page) for case in study.cases if any(case in r for r in study.ran.values())],
     }
@@ -57,19 +61,29 @@ def _case(tables: Tables, case: str, page: Path) -> dict[str, Any]:
     first = reference_of(tables.study)  # arms may have read a degraded report: the reference's comes first
     told = sorted((ran for ran in runs if ran), key=lambda ran: ran.arm != first)
     diagram = next((f for ran in told if (f := ran.folder / "diagram.png").is_file()), None)
+    text = _read(told[0].folder / "report.txt")
     return {
         "id": case,
-        "text": _narrative(told[0].folder),
+        "text": text[:NARRATIVE_CHARS],
+        "told": _told(told[0], min(len(text), NARRATIVE_CHARS)),
         "img": _thumb(diagram) if diagram else None,
         "arms": [_arm(ran, tables.values[ran.arm][case], page) if ran else None for ran in runs],
     }
 
 
-def _narrative(folder: Path) -> str:
+def _read(file: Path) -> str:
     try:
-        return (folder / "report.txt").read_text(encoding="utf-8")[:NARRATIVE_CHARS]
-    except OSError:
+        return file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
         return ""
+
+
+def _told(ran: FinishedCase, chars: int) -> list[list[Any]]:
+    """[start, end, mark] of each sentence of the text as shown that ends within so many characters."""
+    items = (ran.result.get("account") or {}).get("items") or ()
+    spans = shown_in(_read(ran.folder / "player.html"))
+    told = told_sentences(ran.result.get("facts") or (), items, spans)
+    return [[one.start, one.end, one.mark] for one in told if one.end <= chars]
 
 
 def _thumb(diagram: Path) -> str | None:
@@ -111,7 +125,7 @@ def _account(result: Mapping[str, Any]) -> dict[str, Any] | None:
         return None
     lacks = [line for line in (lacking_in_words(account, LACKING_SHOWN),) if line]
     kept = {key: account[key] for key in ("verdict", "told", "has", "lacking", "assumed")}
-    return kept | {"lacks": lacks, "sentence": account.get("sentence", "")}
+    return kept | {"lacks": lacks, "sentence": verdict_sentence(result)}
 
 
 # ------------------------------------------------------------------ what to draw

@@ -80,7 +80,8 @@ function card(one) {
     figure.append(image);
     left.append(figure);
   }
-  const story = element("p", "story", one.text);
+  const story = element("p", "story");
+  tell(story, one);
   story.title = "click for the whole report";
   story.addEventListener("click", () => story.classList.toggle("open"));
   left.append(story);
@@ -88,6 +89,19 @@ function card(one) {
   one.arms.forEach((run, k) => tiles.append(tile(run, data.arms[k])));
   box.append(left, tiles);
   return box;
+}
+
+// The report, each sentence marked as it was read: by color, and what is not simply read in words too.
+function tell(story, one) {
+  let from = 0;
+  for (const [start, end, mark] of one.told) {
+    story.append(one.text.slice(from, start));
+    const span = element("span", "told " + mark, one.text.slice(start, end));
+    if (data.marked[mark]) span.append(element("sup", "", data.marked[mark]));
+    story.append(span);
+    from = end;
+  }
+  story.append(one.text.slice(from));
 }
 
 function tile(run, arm) {
@@ -115,7 +129,7 @@ function tile(run, arm) {
   line.append(element("span", "pill " + (good ? "good" : run.status === "refused" ? "" : run.status === "generated" && run.declared !== false ? "amber" : "bad"), pill));
   box.append(line);
   const o = run.observed;
-  if (o) box.append(element("p", "", `${o.actor} ${o.actor_area} · ${o.other} ${o.other_area} at ${Number(o.t_s).toFixed(1)} s` + (run.speed != null ? `, ${run.speed.toFixed(0)} m/s` : "")));
+  if (o) box.append(element("p", "", `${o.actor} ${o.actor_area} · ${o.other} ${o.other_area} at ${Number(o.t_s).toFixed(1)} s` + (run.speed != null ? `, closing at ${run.speed.toFixed(0)} m/s` : "")));
   const marks = element("div", "marks");
   if (run.status === "generated") run.right.forEach((v, k) => v !== null && marks.append(element("span", v ? "" : "no", (v ? "✓ " : "✗ ") + data.verdicts[k])));
   box.append(marks);
@@ -129,13 +143,11 @@ function tile(run, arm) {
   return box;
 }
 
-// What the report tells and the scenario has and lacks: words and a mark, not color alone.
+// The verdict, in the sentence that stands everywhere else too: words and a mark, not color alone.
 function account(a) {
   const whole = a.verdict === "whole";
-  const text = whole ? `✓ all ${a.told} told are there` : a.lacking ? `⚠ ${a.lacking} of ${a.told} told lacking` : `⚠ ${a.verdict}`;
-  const box = element("p", "account " + (whole ? "good" : "amber"), `${text} · ${a.assumed} assumed`);
-  if (a.sentence) box.title = a.sentence;
-  return box;
+  const text = a.sentence || `${a.verdict}: ${a.has} of ${a.told} things told are there, ${a.assumed} assumed`;
+  return element("p", "account " + (whole ? "good" : "amber"), `${whole ? "✓" : "⚠"} ${text.charAt(0).toUpperCase()}${text.slice(1)}`);
 }
 
 // ---------------------------------------------------------------- networks
@@ -196,6 +208,7 @@ let typing;
 byId("words").addEventListener("input", () => { clearTimeout(typing); typing = setTimeout(choose, 120); });
 byId("tools").addEventListener("submit", (event) => event.preventDefault());
 new IntersectionObserver((seen) => seen.some((s) => s.isIntersecting) && made < shown.length && more(), { rootMargin: "900px" }).observe(byId("more"));
+if (data.arms.length === 1) byId("gallery").className = "alone"; else byId("by").textContent = " (by the reference, or the first arm that has the case)";
 const wish = new URLSearchParams(location.hash.slice(1));
 for (const id of ["words", "arm", "show", "sort"]) if (wish.has(id)) byId(id).value = wish.get(id);
 choose();

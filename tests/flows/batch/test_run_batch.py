@@ -1,6 +1,7 @@
 """A batch without Prefect: what one case dies of, the others survive."""
 
 import threading
+from types import SimpleNamespace
 
 import pytest
 
@@ -44,6 +45,22 @@ def test_running_again_skips_what_is_done_and_tries_failures_again(batch):
     assert again["a"].result["status"] == "generated"
     fresh = work(batch(fresh=True))
     assert not any(e.reused for e in fresh.values())
+
+
+def test_what_checks_and_plays_a_single_case_is_started_beforehand_and_a_fault_waits_for_its_call():
+    started = []
+
+    class Quick:
+        def load(self):
+            started.append(self)
+
+    class Lacking:
+        def load(self):
+            raise MissingTool("no such program")
+
+    config = SimpleNamespace(validators=(Lacking(), Quick()), simulator=Quick())
+    run_batch._load_programs(SimpleNamespace(config=config))
+    assert started == [config.validators[1], config.simulator]
 
 
 def test_a_single_case_runs_in_this_process_and_tells_its_steps(batch):

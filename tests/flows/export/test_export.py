@@ -149,6 +149,26 @@ def test_film_shows_the_whole_time_with_the_report_and_the_verdict(made, tmp_pat
     assert (first != np.asarray(shots.convert("RGB"))).any()
 
 
+def test_film_writes_names_beside_the_vehicles_even_where_they_touch(made):
+    shots = Shots(FinishedCase(made))
+    contact = shots.case.result["collision"]["observed"]
+    at = shots.name_places(contact["t_s"])
+    tracks = {track.actor: track for track in shots.case.script.trajectories}
+    row = round(contact["t_s"] / 0.05)
+    for name, other in (("V1", "V2"), ("V2", "V1")):
+        x, y = shots._pixel(*tracks[other].points[row])
+        own = shots._pixel(*tracks[name].points[row])
+        assert np.hypot(at[name][0] - x, at[name][1] - y) > np.hypot(own[0] - x, own[1] - y)
+
+
+def test_film_tells_the_verdict_in_all_lines_that_there_are_and_says_where_it_is_cut(made):
+    shots = Shots(FinishedCase(made))
+    assert " ".join(shots.verdict_lines) == shots.case.result["account"]["sentence"]
+    shots.case.result["account"]["sentence"] = "much is not there; " * 60
+    assert len(shots.verdict_lines) > 4
+    assert shots.verdict_lines[-1].endswith("...")
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

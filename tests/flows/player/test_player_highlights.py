@@ -49,6 +49,12 @@ def test_a_lane_belongs_to_the_road_that_it_runs_along_either_way():
     assert road_along(Strip(np.array([[0.0, 0.0], [9.0, 9.0]]), 3.5, True), axes) == ""
 
 
+def test_a_lane_around_a_circle_belongs_to_no_road():
+    quarter = np.linspace(-3 * math.pi / 4, -math.pi / 4, 9)
+    around = Strip(20 * np.column_stack((np.cos(quarter), np.sin(quarter))), 3.5, True)
+    assert road_along(around, {"road cross": 0.0}) == ""
+
+
 def test_roads_run_as_their_axis_facts_say():
     report = CrashReport(case="c", narrative="V1 was traveling north on the north/south road.")
     assert road_axes(rows(report)) == {"road main": pytest.approx(math.pi / 2)}

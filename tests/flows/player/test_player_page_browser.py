@@ -89,6 +89,29 @@ def test_plots_follow_the_clock_and_take_one_to_an_instant(page):
     page.until("Math.abs(Number(document.querySelector('#time').value) - 92) < 3")
 
 
+def test_the_legend_tells_speeds_as_they_touch_and_behind_it_none_as_assumed(page):
+    table = "[...document.querySelectorAll('#speeds tr')].slice(1).map(r => r.children[3].textContent)"
+    legend = "[...document.querySelectorAll('#legend i')].map(c => c.textContent.split(' · ')[1])"
+    before = page.run(legend)
+    assert any(speed.endswith("(assumed)") for speed in before)
+    page.key("c")
+    page.until(f"{legend}[0] !== {json.dumps(before[0])}")
+    assert [speed.removesuffix(" (assumed)") for speed in page.run(legend)] == page.run(table)
+    page.key("ArrowRight")
+    page.until(f"!{legend}.some(speed => speed.includes('assumed'))")
+
+
+@pytest.mark.parametrize("width", [1024, 700, 390])
+def test_every_control_stands_whole_on_the_stage(tab, folder, width):
+    tab.size(width, 844)
+    tab.open(f"file://{folder / 'player.html'}?controls{width}")
+    right = tab.run("document.querySelector('#stage').getBoundingClientRect().right")
+    controls = "[...document.querySelectorAll('#controls > *')].map(c => c.getBoundingClientRect())"
+    assert max(tab.run(f"{controls}.map(r => r.right)")) <= right
+    assert tab.run("document.querySelector('#play').offsetWidth") >= 32
+    tab.size(1400, 900)
+
+
 @pytest.mark.parametrize("layer", ["paths", "labels", "rest", "signs", "names", "assumed"])
 def test_every_layer_can_be_left_out(page, layer):
     before = picture(page)

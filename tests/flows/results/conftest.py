@@ -44,6 +44,20 @@ LACKING = {"kind": "lacks", "text": "contact 2: V2 strikes V3", "reason": "the t
 ACCOUNT = {"verdict": "lacking", "told": 5, "has": 4, "lacking": 1, "assumed": 3, "items": [LACKING]}
 
 
+PLACES = {sentence: (at := STORY.index(sentence), at + len(sentence)) for sentence in (
+    "V1 was traveling east on a two-lane road.", "V2 was stopped ahead.", "The front of V1 struck the rear of V2.",
+)}  # fmt: skip
+"""[start, end) of the sentences of STORY."""
+
+
+def with_marks(told):
+    """A result whose first sentence was read, whose second one is contradicted, and whose last one is unread."""
+    first, second, last = (dict(zip(("start", "end"), place, strict=True)) for place in PLACES.values())
+    items = [{"kind": "contradicts", "text": "", **second}, {"kind": "unread", "text": "", **last}]
+    facts = [{"field": "vehicles.V1.heading", **first}, {"field": "vehicles.V2.maneuver", **second}]
+    return told | {"facts": facts, "account": told["account"] | {"items": [*told["account"]["items"], *items]}}
+
+
 def result(case, arm, status="generated", realised=True):
     observed = {"actor": "V1", "other": "V2", "actor_area": "front", "other_area": "back", "t_s": 1.6}
     declared = {"striker": "V1", "struck": "V2", "striker_area": "front", "struck_area": "back"}
@@ -61,14 +75,15 @@ def result(case, arm, status="generated", realised=True):
     }  # fmt: skip
 
 
-def write_case(folder, status="generated", net=NET, realised=True, story=STORY, ttc=0.5, faults=()):
+def write_case(folder, status="generated", net=NET, realised=True, story=STORY, ttc=0.5, faults=(), marked=False):
     """One finished case; `faults` are the sources of the findings of its road attempt."""
     place = folder / "attempts" / "road-01"
     place.mkdir(parents=True, exist_ok=True)
     findings = [{"source": s, "what": "w", "where": "x", "value": "", "remedy": "r"} for s in faults]
     (place / "findings.json").write_text(json.dumps(findings))
     (folder / "report.txt").write_text(story)
-    (folder / "result.json").write_text(json.dumps(result(folder.name, folder.parent.name, status, realised)))
+    told = result(folder.name, folder.parent.name, status, realised)
+    (folder / "result.json").write_text(json.dumps(with_marks(told) if marked else told))
     if status != "generated":
         return
     (folder / "road.net.xml").write_text(net)

@@ -81,6 +81,15 @@ def test_what_a_batch_left_out_is_a_remark(tables):
     assert tables_of(load_results(folder)).remarks[-1].startswith("left out, 1 beside the cases: cases/notes.docx")
 
 
+def test_tables_in_which_arms_differ_come_first_and_the_others_are_named(tables):
+    made = tables({"a": {"c1": {}, "c2": {}}, "b": {"c1": {"ttc": 0.5}, "c2": {"ttc": 2.5}}})
+    alike = [table.alike for table in made.tables]
+    assert alike == sorted(alike)
+    assert not made.tables[0].alike
+    assert made.tables[-1].title in made.remarks[1]
+    assert not any(table.alike for table in tables({"a": {"c1": {}}}).tables)
+
+
 def test_an_arm_that_has_not_begun_has_empty_cells(tables):
     made = tables({"a": {"c0": {}}, "b": {}})
     (table,) = [t for t in made.tables if t.key == "generation"]

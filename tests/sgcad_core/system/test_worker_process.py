@@ -36,6 +36,14 @@ def test_calls_run_in_one_other_process(worker):
     assert where.call()[0] == first
 
 
+def test_a_process_that_was_begun_before_serves_the_first_call(worker):
+    where = worker("where")
+    where.begin()
+    begun = where._process.popen.pid
+    where.begin()
+    assert where.call()[0] == begun
+
+
 def test_prints_do_not_disturb_large_answers(worker):
     double = worker("double")
     values = np.arange(500_000, dtype=float)

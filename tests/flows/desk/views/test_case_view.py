@@ -1,20 +1,31 @@
-"""The report on a case's page: sentences with facts, and those that the account has something against."""
+"""The report on a case's page: its sentences, numbered and marked."""
 
-from flows.desk.views.case_view import pieces_of
+from flows.desk.views.case_view import pieces_of, told_of
 
 TEXT = "V1 was northbound. A purple balloon hovered. V1 struck V2."
-SPANS = {0: (0, 18), 19: (19, 44), 45: (45, 58)}
+RESULT = {
+    "facts": [
+        {"field": "vehicles.V1.heading", "start": 0, "end": 18}, {"field": "contacts.0.striker", "start": 45, "end": 58}
+    ],
+    "account": {"items": [
+        {"kind": "unread", "start": 21, "end": 40}, {"kind": "lacks", "start": 45, "end": 58},
+        {"kind": "contradicts", "start": 45, "end": 58}, {"kind": "has", "start": 0, "end": 18},
+        {"kind": "guessed", "start": None, "end": None},
+    ]},
+}  # fmt: skip
 
 
-def test_a_sentence_carries_the_gravest_mark_in_words():
-    facts = [{"field": "vehicles.V1.heading", "start": 0}]
-    items = [
-        {"kind": "unread", "start": 21}, {"kind": "lacks", "start": 45}, {"kind": "contradicts", "start": 45},
-        {"kind": "has", "start": 0}, {"kind": "guessed", "start": None},
+def test_a_sentence_carries_its_number_its_things_and_its_mark():
+    pieces, told = pieces_of(TEXT, told_of(RESULT, ""))
+    assert [(p.text, p.number, p.things, p.mark, p.marked) for p in pieces if p.number >= 0] == [
+        ("V1 was northbound.", 0, ("V1",), "read", ""), ("purple balloon hove", 1, (), "unread", "not read"),
+        ("V1 struck V2.", 2, ("contact",), "contradicts", "contradicted"),
     ]  # fmt: skip
-    pieces, numbers = pieces_of(TEXT, SPANS, facts, items)
-    assert [(p.text.strip(), p.marked) for p in pieces if p.number >= 0] == [
-        ("V1 was northbound.", ""), ("A purple balloon hovered.", "not read"), ("V1 struck V2.", "contradicted")
-    ]  # fmt: skip
-    assert set(numbers) == set(SPANS)
+    assert [one.of for one in told] == [0, 21, 45]
     assert "".join(p.text for p in pieces) == TEXT
+
+
+def test_a_report_that_is_shorter_than_its_sentences_keeps_those_that_it_has():
+    pieces, told = pieces_of(TEXT[:30], told_of(RESULT, ""))
+    assert len(told) == 1
+    assert "".join(p.text for p in pieces) == TEXT[:30]

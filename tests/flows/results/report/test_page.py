@@ -67,6 +67,16 @@ def test_the_gallery_holds_what_a_case_came_to(tables, tmp_path):
     assert len(first["draw"]["lanes"]) == 6
 
 
+def test_each_sentence_of_the_report_is_marked_as_it_was_read(tables, tmp_path):
+    text = made(tables, tmp_path, {"a": {"c1": {"marked": True}}})
+    (case,) = data_of(text)["cases"]
+    assert {case["text"][a:b]: mark for a, b, mark in case["told"]} == {
+        "V1 was traveling east on a two-lane road.": "read", "V2 was stopped ahead.": "contradicts",
+        "The front of V1 struck the rear of V2.": "unread",
+    }  # fmt: skip
+    assert data_of(text)["marked"]["unread"] == "not read"
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium to look with")
 def test_the_page_can_be_read_in_the_light_and_in_the_dark(tables, tmp_path):
@@ -81,6 +91,24 @@ def test_the_page_can_be_read_in_the_light_and_in_the_dark(tables, tmp_path):
             assert walker.poor() == []
             assert walker.run("getComputedStyle(document.documentElement).colorScheme") == theme
         assert walker.faults == []
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium to look with")
+def test_a_tile_tells_the_verdict_in_its_sentence_and_the_report_what_was_not_read(tables, tmp_path):
+    file = tmp_path / "r.html"
+    file.write_text(made(tables, tmp_path, {"a": {"c1": {"marked": True}}}))
+    with walking(CHROMIUM) as walker:
+        walker.open(f"file://{file}")
+        walker.until("document.querySelector('.tile .account')")
+        assert walker.run("document.querySelector('.tile .account').textContent").startswith(
+            "⚠ Lacking: 4 of 5 things told"
+        )
+        told = "[...document.querySelectorAll('.story .told')]"
+        assert walker.run(f"{told}.map(s => s.className)") == ["told read", "told contradicts", "told unread"]
+        assert walker.run("[...document.querySelectorAll('.told sup')].map(s => s.textContent)") == [
+            "contradicted", "not read"
+        ]  # fmt: skip
 
 
 def test_a_case_is_small_so_that_500_stay_quick(tables, tmp_path):
