@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import Floats, wrap_angle
 from sgcad_core.metrics.told_lanes import ToldLane
-from sgcad_core.records.course import Attitude, Hand, RestLane, RestTold
+from sgcad_core.records.course import AT_IMPACT_M, Attitude, Hand, RestLane, RestTold
 from sgcad_core.records.specs import Compass
 from sgcad_core.roads.surface import OfLane, RoadSurface
 
@@ -45,6 +45,8 @@ _LANE_EDGE_M = 0.3
 _SAME_WAY_RAD, _WAY_RAD = math.radians(120.0), math.radians(50.0)
 """A lane without a stated direction runs within this angle of the vehicle's heading at its first contact: it does not
 run against it; one with a stated direction runs within this angle of that."""
+_AGAINST = -0.5
+"""Cosine of the angle between a heading and a lane from which on the lane runs against it."""
 _NO_LANE_M = 20.0
 """Error where no such lane is drawn."""
 
@@ -80,13 +82,16 @@ def rest_errors(
     facing = None if told.facing_deg is None else _apart(poses[:, 2], compass_rad(told.facing_deg)) - FACING_RAD
     where = None if told.where is None else _misplaced(told, poses, (off, bearing, nearest), surface)
     side = None if told.side is None or told.where in ("road", "intersection") else (
-        np.where(off < SHOULDER_M[0], math.pi, _beside(told.side, poses, bearing, came_rad, surface)) - SIDE_RAD
+        np.where(off < SHOULDER_M[0], math.pi, _beside(told.side, poses, (bearing, nearest), came_rad, surface))
+        - SIDE_RAD
     )  # fmt: skip
     return RestErrors(facing, where, side, _beside_lane(told, poses, came_rad, surface, began))
 
 
 def near_m(distance_m: float) -> float:
     """By how much a distance may differ from one that is told."""
+    if distance_m == AT_IMPACT_M:
+        return AT_IMPACT_M
     return max(_NEAR_SHARE * distance_m, _NEAR_M)
 
 
@@ -178,11 +183,20 @@ def _own_lanes(surface: RoadSurface, began: Floats) -> NDArray[np.bool_]:
     ])  # fmt: skip
 
 
-def _beside(side: Compass | Hand, poses: Floats, bearing: Floats, came_rad: float, surface: RoadSurface) -> Floats:
+def _beside(
+    side: Compass | Hand, poses: Floats, lane: tuple[Floats, NDArray[np.int_]], came_rad: float, surface: RoadSurface
+) -> Floats:
     """Angle between the stated side and the direction of the point: from the nearest lane, or from the center of the
-    junction."""
+    junction. `lane`: bearing from the nearest lane, and its piece.
+
+    Between two carriageways a point lies left of both: seen from the far one it would lie on the right.
+    """
+    bearing, nearest = lane
     if side in ("left", "right"):
-        return _apart(bearing, came_rad + (math.pi / 2 if side == "left" else -math.pi / 2))
+        ways = surface.ways[nearest]
+        beyond = (np.sin(bearing - ways) > 0.0) & (np.cos(ways - came_rad) < _AGAINST)
+        seen = np.where(beyond, bearing + math.pi, bearing)
+        return _apart(seen, came_rad + (math.pi / 2 if side == "left" else -math.pi / 2))
     wanted = compass_rad(COMPASS_DEG[side])
     best = _apart(bearing, wanted)
     for x, y, _ in surface.junctions:

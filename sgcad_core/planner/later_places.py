@@ -37,6 +37,8 @@ _AGAINST, _OTHER_SIDE = 2.5, 1.5
 """Ranks of a vehicle that waits against the direction of its lane, and of one that waits in it but is met with another
 side than told."""
 _OFF_ROAD_M = 0.3
+_IN_JUNCTION = 0.8
+"""Rank of one that waits in a junction: drivers wait before it."""
 
 
 @dataclass(frozen=True)
@@ -56,12 +58,10 @@ class ToBeStruck:
     def poses(self, after: int) -> Iterator[Floats]:
         """(3,) poses, the best first, where no other actor ever is and the partner comes behind a sample only."""
         ranked = [found for k in self._samples(after) for found in self._before(k)]
-        on_road = self.surface.off(np.array([pose[:2] for _, _, pose in ranked]))[0] if ranked else np.zeros(0)
+        poses = np.array([pose for _, _, pose in ranked]).reshape(-1, 3)
         waits = self.role.actor.maneuver == "stopped"
-        order = sorted(
-            (rank + (waits and off > _OFF_ROAD_M), n)
-            for n, ((rank, _, _), off) in enumerate(zip(ranked, on_road, strict=True))
-        )
+        apart = not_waiting(self.surface, poses) if waits else np.zeros(len(poses))
+        order = sorted((rank + more, n) for n, ((rank, _, _), more) in enumerate(zip(ranked, apart, strict=True)))
         for _, n in order:
             _, k, pose = ranked[n]
             if self._is_free(pose, k):
@@ -125,3 +125,11 @@ class ToBeStruck:
             if last and float(gaps_where_near(there, self.role.size, track.poses[:last], track.size).min()) <= 0.0:
                 return False
         return True
+
+
+def not_waiting(surface: RoadSurface, poses: Floats) -> Floats:
+    """(n,) ranks of (n, 3) poses at which drivers do not wait: off the road, and in a junction."""
+    off, _, nearest = surface.nearest(poses[:, :2]) if len(poses) else (np.zeros(0), None, np.zeros(0, dtype=int))
+    inside = np.array([bool(surface.lanes) and surface.lanes[n] == "junction" for n in nearest], dtype=float)
+    ranks: Floats = np.where(off > _OFF_ROAD_M, 1.0, _IN_JUNCTION * inside)
+    return ranks

@@ -221,10 +221,11 @@ class _Cast:
         return scene
 
     def _let_through(self, scene: Scene, first: Contact) -> None:
-        """Lets a thing that is struck first give way where its vehicle strikes something else after it."""
+        """Lets a thing that is struck first give way where it is a loose piece, or its vehicle strikes something else
+        after it."""
         track, goes_on = scene.tracks[first.struck], any(first.striker in pair_of(c) for c in self.contacts[1:])
-        if track.motion.fixed and goes_on:
-            thing = self.actors[first.struck]
+        thing = self.actors[first.struck]
+        if track.motion.fixed and (goes_on or thing.loose):
             track.let_pass(glances=is_passed(thing, first.striker_area), stays=thing.firm)
 
     def _look(self, scene: Scene, pair: Iterable[tuple[Option, Motion, float]]) -> None:

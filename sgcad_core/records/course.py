@@ -26,6 +26,9 @@ DepartureSide = Compass | Hand | Literal["either"]
 MoveKind = Literal["departs", "returns", "steers", "crosses", "yaws"]
 """Leaves the road; comes back on it, or into its lane; steers aside; crosses the center line; turns in a skid."""
 
+AT_IMPACT_M = 2.5
+"""Distance from the place of the contact that stands for a rest "at the point of impact": up to twice as far counts."""
+
 
 @dataclass(frozen=True)
 class Move:

@@ -194,6 +194,7 @@ class Actor(Spec):
     width_m: Annotated[float, Field(gt=0.1, le=5)] | None = None
     gore: bool = added(False, "in the gore of a ramp: what stands there, or who crosses it into exit_road")
     firm: bool = added(False, "a thing that stays where it stands: what drives on has glanced off it")
+    loose: bool = added(False, "a piece that lies in the way: what strikes it drives on over it")
 
     @property
     def record(self) -> ActorRecord:

@@ -64,8 +64,8 @@ def search(stages: Iterable[Stage], wanted: tuple[Area, Area] | None) -> Encount
 def _best(
     pairs: Iterable[tuple[Option, Option]], wanted: tuple[Area, Area] | None, best: Encounter | None, known: Known
 ) -> Encounter | None:
-    """The better of the encounter so far and those among some combinations."""
-    for a, b in pairs:
+    """The better of the encounter so far and those among some combinations, the cheapest combinations first."""
+    for a, b in sorted(pairs, key=lambda pair: pair[0].cost + pair[1].cost):
         if best is not None and a.cost + b.cost >= best.cost:
             continue
         if (a, b) not in known:

@@ -20,6 +20,7 @@ from sgcad_core.planner.encounter.off_center import beside_middle
 from sgcad_core.planner.encounter.out_of_lanes import OUT
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.scene import Scene
+from sgcad_core.records.course import AT_IMPACT_M
 
 
 class WholeCourse(NamedTuple):
@@ -40,6 +41,11 @@ _SPEEDS = ((1.0, 1.0), (1.3, 0.75), (0.75, 1.3), (1.2, 1.2), (0.8, 0.8))
 """Factors on speeds that are not stated. Two equally fast vehicles would come to rest where they met, head on."""
 _SPEEDS_AGAIN = ((0.6, 1.3), (1.3, 0.6), (0.45, 1.1), (1.1, 0.45))
 """Further ones where the two touch a second time: one then comes to rest where the other still goes on."""
+_SPEEDS_SHORT = ((0.5, 0.5), (0.35, 0.35), (0.7, 0.7))
+"""Those that are tried first where one of the two comes to rest at the place of the impact."""
+_SPEEDS_ASIDE = ((0.5, 1.1), (1.1, 0.5))
+"""The same where the side on which one of them comes to rest is told: the slower one hardly turns the other one's
+way."""
 _PLACES = 5
 """Places along the stated sides, at each of the speeds."""
 _MOST, _MOST_AGAIN = 5, 14
@@ -75,7 +81,7 @@ def _like(found: Encounter, usual: Impact, *, again: bool) -> Iterator[tuple[Enc
     """Other places along the stated sides, at the given speeds and at others in turn, each with a friction and a
     restitution (`usual` first), those first that turn the vehicles as told; for a second contact (`again`) at the given
     speeds first."""
-    at_speeds = [_along(found, speeds) for speeds in (*_SPEEDS, *(_SPEEDS_AGAIN if again else ()))]
+    at_speeds = [_along(found, speeds) for speeds in _speeds(found, again=again)]
     if again:
         yield from ((other, usual) for other in at_speeds.pop(0))
     others = (other for row in zip_longest(*at_speeds) for other in row if other)
@@ -85,6 +91,17 @@ def _like(found: Encounter, usual: Impact, *, again: bool) -> Iterator[tuple[Enc
     impacts = tuple(dict.fromkeys((usual, *IMPACTS)))
     ranked = [(*misturned(other, impacts), other) for other in islice(others, _RANKED_AGAIN if again else _RANKED)]
     yield from ((other, impact) for _, impact, other in sorted(ranked, key=itemgetter(0)))
+
+
+def _speeds(found: Encounter, *, again: bool) -> tuple[tuple[float, float], ...]:
+    """Factors on the speeds of both, in the order in which they are tried."""
+    rests = [option.role.told.rest for option in (found.first, found.second)]
+    if again:
+        return (*_SPEEDS, *_SPEEDS_AGAIN)
+    if any(rest.distance_m == AT_IMPACT_M for rest in rests):
+        return (*_SPEEDS_SHORT, *_SPEEDS)
+    aside = any(rest.side is not None and rest.where == "off_road" for rest in rests)
+    return (_SPEEDS[0], *_SPEEDS_ASIDE, *_SPEEDS[1:]) if aside else _SPEEDS
 
 
 def _along(found: Encounter, factors: tuple[float, float]) -> Iterator[Encounter]:

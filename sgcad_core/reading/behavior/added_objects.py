@@ -31,6 +31,11 @@ _FIRM = frozenset((
     "culvert",
 ))  # fmt: skip
 """Things that stay where they stand when a vehicle glances off them."""
+_LOOSE = frozenset((
+    "debris", "wheel", "tire", "cone", "barrel", "cover", "manhole", "glass", "metal", "branch", "limb", "ladder",
+    "mattress", "cargo", "bag", "cart",
+))  # fmt: skip
+"""Pieces that a vehicle drives over, or pushes out of its way, without being stopped."""
 _USUAL_M = (0.4, 0.4)
 _LONG_M = 1.5
 """Width from which a thing stands along the road."""
@@ -61,9 +66,10 @@ def with_roadside(
 
 
 def _held(actor: Actor, word: str) -> Actor:
-    """The actor, firm where it is a thing that does not give way."""
-    firm = actor.record.thing and word.lower().rpartition(" ")[2].rstrip("s") in _FIRM
-    return actor.model_copy(update={"firm": True}) if firm else actor
+    """The actor, firm where it is a thing that does not give way, loose where it is a piece that does at once."""
+    named = word.lower().rpartition(" ")[2]
+    kinds = {name for name, words in (("firm", _FIRM), ("loose", _LOOSE)) if {named, named.rstrip("s")} & words}
+    return actor.model_copy(update=dict.fromkeys(kinds, True)) if actor.record.thing and kinds else actor
 
 
 @dataclass

@@ -48,7 +48,11 @@ def _beside_partner(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFact
     count, turns = placed[v.id].way.lanes, placed[v.id].way.turns
     if other is not None and "overtaking" in (v.maneuver, other.maneuver):
         return _behind_each_other(v, other, (count, turns))
-    if other is not None and (side := CHANGES.get(v.maneuver, CHANGES.get(other.maneuver, 0))) and _rear_end(v, facts):
+    if (
+        other is not None
+        and (side := CHANGES.get(v.maneuver, CHANGES.get(other.maneuver, 0)))
+        and _runs_into(v if v.maneuver in CHANGES else other, facts)
+    ):
         return _out_of_lane_behind(v, other, (count, turns), side)
     side = CHANGES.get(v.maneuver, 0)
     if side:
@@ -82,10 +86,14 @@ def _out_of_lane_behind(
     return told if told is not None else start
 
 
-def _rear_end(v: VehicleFacts, facts: CrashFacts) -> bool:
-    """Whether its first contact is of a front with a back."""
+def _runs_into(v: VehicleFacts, facts: CrashFacts) -> bool:
+    """Whether its first contact is of its own front with the back of the other one; one whose back is struck has cut in
+    before that one, which drives in the lane into which the change leads."""
     first = facts.first_contact(v.id)
-    return first is not None and {first.striker_area, first.struck_area} == {"front", "back"}
+    if first is None:
+        return False
+    own, others = first.striker_area, first.struck_area
+    return (own, others) == (("front", "back") if first.striker == v.id else ("back", "front"))
 
 
 def _before_change(v: VehicleFacts, other: VehicleFacts | None, road: tuple[int, tuple[Turn, ...]], side: int) -> int:

@@ -243,3 +243,11 @@ def area_behind(text: str) -> Zone | None:
     near = rule("contact.area_ends").split(clause(text)[:80])[0]
     areas = [area_of(m["area"]) for m in rule("contact.owned_area").finditer(near)]
     return next(filter(None, areas), None) if rule("contact_words.on_the").search(near) else None
+
+
+def with_damage(mention: ContactMention | None, scope: str) -> ContactMention | None:
+    """A contact with the struck part as the damage tells it where nothing else does: "damaging V1's rear door"."""
+    if mention is None or mention.other_area is not None:
+        return mention
+    found = rule("contact_words.damaging").given(vehicle=mention.other).search(scope)
+    return replace(mention, other_area=area_of(found["area"] or found["part"])) if found else mention

@@ -27,6 +27,7 @@ from sgcad_core.reading.contacts.contact_nouns import (
     together,
     touches,
     unnamed_pair,
+    with_damage,
     with_striker,
     without_agent,
 )
@@ -153,7 +154,7 @@ def _contact_mention(
         return _passive(statement, actor, actor_area, scope, m.group(), roster)
     told = _active(statement, actor, actor_area, scope, m.group(), roster)
     if not told or told.other in roster.ids:
-        return told
+        return with_damage(told, scope)
     wheel = rule("contact_words.wheel_end").search(before) or rule("contact_words.wheel_end").search(scope)
     return replace(told, actor_area="front") if wheel else told
 
@@ -260,8 +261,7 @@ def _the_other(statement: Statement, actor: str, roster: Roster) -> str | None:
     """The vehicle that "it" means: of two the other one, else another of the sentence, else the unnumbered subject."""
     subject = next((v for v in roster.ids[:1] if roster.counted and v != actor), None)
     named = (v for v in MENTION.findall(statement.text) if v != actor and v in roster.ids)
-    earlier = statement.earlier if statement.earlier != actor else None
-    return roster.other(actor) or next(named, subject or earlier)
+    return roster.other(actor) or next(named, subject or (statement.earlier if statement.earlier != actor else None))
 
 
 def _not_itself(named: str, actor: str, roster: Roster, statement: Statement) -> str | None:

@@ -23,7 +23,7 @@ from sgcad_core.reading.motion.motion_record import ManeuverCue, Source
 from sgcad_core.reading.text.compass import COMPASS, WORDS
 from sgcad_core.reading.text.normalise import number
 from sgcad_core.reading.text.sentence_roles import Role
-from sgcad_core.records.course import CourseTold, Hand, ImpactTold, Steering
+from sgcad_core.records.course import AT_IMPACT_M, CourseTold, Hand, ImpactTold, Steering
 from sgcad_core.units import METERS
 
 UNREAD: frozenset[Role] = frozenset({"codes", "factors", "towing", "injury", "restraint", "police", "health"})
@@ -116,6 +116,8 @@ def courses_told(
 def _read(one: _CourseReader, segment: Segment, impact: int, event: str, *, late: bool = False) -> None:
     """Take what a segment tells. `late`: it stands behind the first contact in that sentence."""
     before, behind = split(segment, impact)
+    if late and segment.number == impact and not behind:
+        behind = segment.text
     if event and segment.number == impact and (at := segment.text.lower().find(event)) >= 0:
         before, behind = segment.text[:at], segment.text
     _read_evasion(one, segment, before)
@@ -200,6 +202,8 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
             one.add_rest("against", m["thing"], Source(segment.number, m[0], "course_rest.against"))
         one.sources.setdefault("rest.at", Source(segment.number, clause[:20], "course_rest.rest"))
         _read_distance(one, segment, text)
+        if "rest.distance_m" not in one.sources and (m := rule("course_rest.at_impact").search(clause)):
+            one.add_rest("distance_m", AT_IMPACT_M, Source(segment.number, m[0], "course_rest.at_impact"))
     if not known and segment.role not in RETOLD:
         _read_place(one, segment, text, clause)
         _read_lane(one, segment, clause)

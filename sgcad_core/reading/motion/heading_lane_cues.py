@@ -50,6 +50,7 @@ def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
         rule("headings.bound_aside"),
         rule("headings.following"),
         rule("headings.on_course"),
+        rule("headings.on_bound"),
     ):
         for m in by.finditer(text):
             _note_heading(motion, m.group("dir"), weight, by.id)

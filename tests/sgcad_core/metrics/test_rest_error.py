@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sgcad_core.metrics.rest_error import rest_errors
-from sgcad_core.records.course import RestTold
+from sgcad_core.metrics.rest_error import near_m, rest_errors
+from sgcad_core.records.course import AT_IMPACT_M, RestTold
 from sgcad_core.roads.lane_positions import Position
 from sgcad_core.roads.surface import RoadSurface
 
@@ -54,3 +54,21 @@ def test_a_median_lies_left_of_its_lanes() -> None:
     assert right(told, 0.5)["where"]
     assert not right(told, 10.0)["where"]
     assert not right(told, CENTERS["E", 1])["where"]
+
+
+def test_the_median_is_never_on_the_right_of_a_vehicle_that_came_on_either_carriageway() -> None:
+    off_road = {"left": RestTold(where="off_road", side="left"), "right": RestTold(where="off_road", side="right")}
+    for north, came_rad in ((0.5, 0.0), (-0.5, 0.0), (0.5, np.pi), (-0.5, np.pi)):
+        assert {side: right(told, north, came_rad)["side"] for side, told in off_road.items()} == {
+            "left": True, "right": False,
+        }  # fmt: skip
+    assert right(off_road["right"], -10.0)["side"]
+    assert right(off_road["left"], 10.0)["side"]
+
+
+@pytest.mark.parametrize(("told_m", "met_m", "fits"), [
+    (AT_IMPACT_M, 0.0, True), (AT_IMPACT_M, 4.9, True), (AT_IMPACT_M, 5.1, False),
+    (10.0, 12.9, True), (10.0, 5.0, False),
+])  # fmt: skip
+def test_a_rest_at_the_impact_may_lie_some_metres_off(told_m: float, met_m: float, fits: bool) -> None:
+    assert (abs(met_m - told_m) <= near_m(told_m)) == fits

@@ -10,7 +10,7 @@ import pytest
 from sgcad_core.planner.actor_plan import Role
 from sgcad_core.planner.aftermath.struck_objects import standing_track
 from sgcad_core.planner.encounter.meeting_place import Place
-from sgcad_core.planner.later_places import ToBeStruck
+from sgcad_core.planner.later_places import ToBeStruck, not_waiting
 from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.specs import Actor, Area, size_m
@@ -61,3 +61,11 @@ def test_a_partner_that_stands_strikes_nobody() -> None:
 
 def test_a_gentle_push_is_enough_where_there_is_no_more() -> None:
     assert list(search(("front", "back"), mps=1.0).poses(45))
+
+
+def test_drivers_wait_before_a_junction_not_in_it_nor_beside_the_road() -> None:
+    surface = road_surface(network("four_leg"))
+    center, before, beside = [0.0, 0.0, 0.0], [1.8, -40.0, math.pi / 2], [40.0, -40.0, 0.0]
+    inside, on_road, off_road = not_waiting(surface, np.array([center, before, beside]))
+    assert on_road == 0.0 < inside < off_road
+    assert len(not_waiting(surface, np.zeros((0, 3)))) == 0

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS
 from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.encounter_search import _root, along_sides
-from sgcad_core.planner.encounter.try_elsewhere import WholeCourse, least_missed
+from sgcad_core.planner.encounter.try_elsewhere import WholeCourse, _speeds, least_missed
 from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.scene import Scene
+from sgcad_core.records.course import AT_IMPACT_M, RestTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
 from tests.sgcad_core.planner.crash_scenes import network
 
@@ -85,3 +88,15 @@ def test_the_moment_of_a_touch_is_found_between_two_samples(bend: float) -> None
         return rate * (at - wanted) + bend * np.sign(at - wanted) * (at - wanted) ** 2
 
     assert _root(over, 40) == pytest.approx(wanted, abs=5e-3)
+
+
+def test_slow_speeds_are_tried_first_where_a_rest_at_the_impact_is_told() -> None:
+    found = crossing()
+    first = found.first.role
+    for rest, speeds in (
+        (RestTold(distance_m=AT_IMPACT_M), (0.5, 0.5)),
+        (RestTold(where="off_road", side="right"), (1.0, 1.0)),
+        (RestTold(), (1.0, 1.0)),
+    ):
+        told = replace(first, told=replace(first.told, rest=rest))
+        assert _speeds(found._replace(first=replace(found.first, role=told)), again=False)[0] == speeds

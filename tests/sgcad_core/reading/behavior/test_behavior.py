@@ -152,3 +152,9 @@ def test_who_goes_straight_is_in_no_turn_lane(word: str, lane: int) -> None:
     others = tuple(Leg(bearing=b, lanes_in=2, lanes_out=2) for b in ("N", "E", "W"))
     text = f"V1 was traveling north in the {word} lane. V2 was traveling west. The front of V1 struck the left of V2."
     assert _actor(_behavior(text, road_spec(RoadLayout(legs=(wide, *others)))), "V1").lane == lane
+
+
+def test_a_piece_in_the_way_is_loose_and_a_tree_firm() -> None:
+    for word, loose, firm in (("some debris", True, False), ("a traffic cone", True, False), ("a tree", False, True)):
+        thing = _actor(_behavior(f"V1 was traveling east and the front of V1 struck {word}.", PLAIN), "O1")
+        assert (thing.loose, thing.firm) == (loose, firm)

@@ -52,3 +52,11 @@ def test_the_center_turn_lane_is_one_more_than_the_road_has_in_its_direction() -
         "T-intersection. V2 was traveling south. The front of V2 struck the right side of V1."
     )
     assert lanes(text)[0] == 3
+
+
+def test_one_that_cuts_in_starts_beside_the_lane_of_the_one_that_runs_into_it() -> None:
+    rear = " The front of V2 struck the back of V1. It was dry and daylight."
+    text = "V1 was northbound and changed lanes to the left. V2 was northbound." + ROAD + rear
+    assert lanes(text) == (1, 2)
+    told = "V1 was northbound in the left lane and changed lanes to the right. V2 was northbound." + ROAD + rear
+    assert lanes(told) == (3, 2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sgcad_core.reading.reading import read
-from sgcad_core.records.course import CourseTold, ImpactTold, RestTold
+from sgcad_core.records.course import AT_IMPACT_M, CourseTold, ImpactTold, RestTold
 
 INTRO = (
     "Vehicle #1 was a 2001 Ford Taurus traveling north in the northbound lane. "
@@ -162,3 +162,32 @@ def test_the_distance_to_the_rest_is_read(words: str, meters: float) -> None:
 )  # fmt: skip
 def test_other_lengths_are_no_distance_to_the_rest(words: str) -> None:
     assert course(f"{HIT} Vehicle #1 {words}.").rest.distance_m is None
+
+
+# ------------------------------------------------------------------ where the contact is told
+def test_a_rest_in_the_sentence_of_the_contact_is_read() -> None:
+    hit = (
+        "The front of Vehicle #1 struck the left side of Vehicle #2 and both vehicles came to rest in the intersection."
+    )
+    assert {course(hit, who).rest.where for who in ("V1", "V2")} == {"intersection"}
+    alone = "The front of Vehicle #1 struck a fence and Vehicle #1 came to final rest facing east."
+    assert course(alone).rest.facing_deg == 90.0
+
+
+@pytest.mark.parametrize(
+    ("words", "rest"),
+    [("with final rest facing south", RestTold(facing_deg=180.0)),
+     ("and came to rest inside the intersection", RestTold(where="intersection")),
+     ("and came to rest at the southern portion of the intersection", RestTold(where="intersection")),
+     ("and came to rest on the driver's side", RestTold(attitude="left")),
+     ("and came to rest on its passenger side", RestTold(attitude="right")),
+     ("and came to rest at the point of impact", RestTold(distance_m=AT_IMPACT_M)),
+     ("and came to rest just after impact", RestTold(distance_m=AT_IMPACT_M)),
+     ("and came to rest off-road", RestTold(where="off_road"))],
+)  # fmt: skip
+def test_further_words_for_a_rest(words: str, rest: RestTold) -> None:
+    assert course(f"{HIT}Vehicle #1 rotated counterclockwise {words}.").rest == rest
+
+
+def test_a_told_distance_goes_before_the_place_of_the_impact() -> None:
+    assert course(f"{HIT}Vehicle #1 came to rest 10 m from the point of impact.").rest.distance_m == 10.0

@@ -70,3 +70,12 @@ def test_things_of_one_sentence_stand_in_their_order_though_a_word_comes_twice()
 def test_a_thing_that_is_told_again_in_the_same_sentence_is_one() -> None:
     text = "V1 hit V2. V1 left the road and hit a pole, and its right side hit the pole as it passed."
     assert [i.other for i in read(text).crash.impacts] == ["pole"]
+
+
+def test_the_damage_tells_the_side_of_a_contact_that_has_none() -> None:
+    street = "The AV was stopped southbound on Oak Street. A pickup truck was traveling northbound on Oak Street. "
+    hit = "The pickup truck made contact with the AV, damaging the AV's rear driver side bumper."
+    contact = read(street + hit).crash.contacts[0]
+    assert set(contact.struck_may) == {"back", "left"}
+    named = "The pickup truck made contact with the right door of the AV, damaging the AV's rear bumper."
+    assert read(street + named).crash.contacts[0].struck_area == "right"

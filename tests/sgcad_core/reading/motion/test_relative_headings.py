@@ -24,3 +24,12 @@ def test_a_parked_vehicle_heads_as_the_traffic_on_its_side_of_the_road(
     crash = read(f"{told}, which was legally parked.").crash
     assert crash.vehicles[1].heading == heading
     assert crash.contacts[0].struck_area == area
+
+
+def test_the_street_on_which_one_stands_tells_where_it_heads() -> None:
+    for place in (
+        "stopped in traffic for a red light on eastbound Oak Street",
+        "traveling in the second lane in the eastbound direction of Oak Street",
+    ):
+        crash = read(f"The AV was {place} when a car made contact with the rear of the AV.").crash
+        assert {v.heading for v in crash.vehicles} == {"E"}
