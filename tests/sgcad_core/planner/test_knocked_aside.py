@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import combinations
 
 import numpy as np
@@ -80,3 +81,19 @@ def test_a_lone_vehicle_rolls_over_and_touches_nobody() -> None:
     assert track.roll_rad is not None
     assert np.isclose(abs(track.roll_rad[-1]) % (2 * np.pi), np.pi, atol=0.05)
     assert np.isclose(np.sin(track.heading_rad[-1]), 1.0, atol=0.05)
+
+
+def test_a_vehicle_goes_straight_on_over_a_loose_piece_and_is_turned_by_a_thing_that_stands() -> None:
+    car = Actor(id="V1", kind="car", road="S", direction="forward", exit_road="N", maneuver="straight")
+    hit = Contact(striker="V1", struck="O1", striker_area="front", struck_area="front")
+    turned = {}
+    for loose in (True, False):
+        piece = Actor(id="O1", kind="object", road="S", direction="forward", maneuver="stopped", loose=loose)
+        found = plan(BehaviorSpec(actors=(car, piece), contacts=(hit,)), network("straight"))
+        way = found.trajectories[0]
+        assert found.realised
+        after = int(np.searchsorted(way.t_s, found.contact.t_s))
+        gone = math.hypot(way.x_m[-1] - way.x_m[after], way.y_m[-1] - way.y_m[after])
+        turned[loose] = abs(way.heading_rad[-1] - way.heading_rad[0]), gone
+    assert turned[True][0] < math.radians(5.0) < turned[False][0]
+    assert turned[True][1] > 8.0 > turned[False][1]
