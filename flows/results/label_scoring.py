@@ -16,7 +16,7 @@ from sgcad_core.errors import BadInput, InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.metrics.labels.course_label_match import course_marks
 from sgcad_core.metrics.labels.course_labels import Agreement, CourseLabel, agreed, agreements, course_label
-from sgcad_core.metrics.labels.label_match import compare
+from sgcad_core.metrics.labels.label_match import NETWORK_FIELDS, compare
 from sgcad_core.metrics.labels.observed_crash import Crash
 
 
@@ -44,7 +44,7 @@ class Scored(NamedTuple):
                     yield f"{case}: {field} {', '.join(f'{m:g}' for m in marks)}"
 
 
-_ERRORS = ("intersection_count_error", "lane_count_error", "connectivity_error")
+_ERRORS = NETWORK_FIELDS
 
 
 def score(

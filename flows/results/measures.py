@@ -16,7 +16,8 @@ from sgcad_core.result import STATUSES, as_declared, counts_of
 Kind = Literal["share", "mean", "ratio"]
 Better = Literal["low", "high", ""]
 SHORT = {
-    "intersection_count_error": "intersections", "lane_count_error": "lanes", "connectivity_error": "connectivity",
+    "intersection_count_error": "intersections", "lane_count_error": "lanes", "segment_count_error": "segments",
+    "segment_lanes_error": "segment_lanes", "connectivity_error": "connectivity",
 }  # fmt: skip
 
 
@@ -72,7 +73,7 @@ NETWORK_WRONG = (
 )  # fmt: skip
 NETWORK_MEAN = tuple(
     Measure(f"{short}_error", label, "mean", "%", "low")
-    for short, label in zip(SHORT.values(), ("ICE", "LCE", "CE"), strict=True)
+    for short, label in zip(SHORT.values(), ("ICE", "LCE", "segments", "lanes a segment", "CE"), strict=True)
 )
 PEOPLE = (
     Measure("person_facts", "facts by people", "mean", "", digits=2),

@@ -84,6 +84,10 @@ class Grammar:
         """Tokens as bytes."""
         return bytes(self.maker.tokens.decode_bytes(list(ids)))
 
+    def spelled(self, text: str) -> list[int]:
+        """A text's tokens in the tokenizer's spelling."""
+        return list(self.maker.tokens.tokenize_str(text))
+
 
 class GrammarState:
     """The state of the grammar after the tokens of one answer so far."""

@@ -138,3 +138,25 @@ def defused(text: str) -> str:
 def data_url(png: bytes) -> str:
     """A picture as a data URL."""
     return f"data:image/png;base64,{base64.b64encode(png).decode()}"
+
+
+def listed(http: ServerHttp, model: str) -> tuple[str, int | None]:
+    """The server's name of a model and its window, from /v1/models. Raises ConfigError if it has no such model."""
+    response = http.get("v1/models")
+    found = body_of(response, "data")
+    if found is None:
+        raise ConfigError(f"{http.url('v1/models')} lists no models but {said(response)}; mend backbone.base_url")
+    names = {str(one.get("id")): one for one in found["data"]}
+    if model not in names:
+        raise ConfigError(
+            f"backbone.model {model!r}: the server at {http.base_url} has {', '.join(names)}; use that name"
+        )
+    meta = names[model].get("meta") or {}
+    window = names[model].get("max_model_len") or meta.get("n_ctx") or meta.get("n_ctx_train")
+    return model, int(window) if window else None
+
+
+def tokenized(http: ServerHttp, body: Mapping[str, Any]) -> list[int] | None:
+    """A text's tokens by the page /tokenize; None if the server has no such page."""
+    found = body_of(http.status_of("tokenize", body), "tokens")
+    return [int(token) for token in found["tokens"]] if found else None

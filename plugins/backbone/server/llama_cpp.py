@@ -10,9 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from plugins.backbone.server.http import ServerHttp, body_of, said
+from plugins.backbone.server.http import ServerHttp, body_of, listed, said, tokenized
 from plugins.backbone.server.protocol import Offer, Schema, Speaker, Top
-from plugins.backbone.server.vllm import listed, tokenized
 from sgcad_core.errors import ConfigError
 
 _OLD = "use llama.cpp of December 2025 or newer (token numbers in grammars), or decoder 'greedy'"
@@ -22,6 +21,7 @@ class LlamaCpp(Speaker):
     """Speaks to one server of llama.cpp."""
 
     named = 4
+    guided = False
 
     def __init__(self, http: ServerHttp, model: str) -> None:
         self.http = http

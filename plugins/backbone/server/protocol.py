@@ -52,6 +52,10 @@ class Speaker(ABC):
 
     named = 64
     """Up to how many tokens asking for their values by `exact` costs less than a larger top k."""
+    at_once = False
+    """Whether one request tells the values of given tokens at many places (`exact_of`)."""
+    guided = True
+    """Whether a draft from the start of an answer follows the schema."""
 
     @abstractmethod
     def offer(self) -> Offer:
@@ -68,6 +72,15 @@ class Speaker(ABC):
         `schema` guides the server from the start of an answer; it may be ignored.
         """
 
+    def draft_told(
+        self, prompt: Sequence[int], behind: Sequence[int], limit: int, schema: Schema, top: int
+    ) -> tuple[list[int], list[Top]]:
+        """A draft, and the places of its tokens where the server tells them with it; here it does not.
+
+        Values are those before the schema's mask.
+        """
+        return self.draft(prompt, behind, limit, schema), []
+
     @abstractmethod
     def tops(self, prompt: Sequence[int], behind: Sequence[int], count: int, top: int) -> list[Top]:
         """The last `count` places of prompt and `behind`: [-1] is the place of the token that would follow."""
@@ -80,3 +93,7 @@ class Speaker(ABC):
     @abstractmethod
     def exact(self, prompt: Sequence[int], behind: Sequence[int], tokens: Sequence[int]) -> dict[int, float]:
         """Log-probabilities of given tokens at the place behind it all; whatever their rank."""
+
+    def exact_of(self, texts: Sequence[list[int]], tokens: Sequence[int]) -> list[dict[int, float]]:
+        """`exact` behind each of several texts, prompts included."""
+        return [self.exact(text, (), tokens) for text in texts]

@@ -10,9 +10,8 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from plugins.backbone.server.http import ServerHttp, body_of, said
+from plugins.backbone.server.http import ServerHttp, body_of, listed, said, tokenized
 from plugins.backbone.server.protocol import Offer, Schema, Speaker, Top
-from plugins.backbone.server.vllm import listed, tokenized
 from sgcad_core.errors import ConfigError
 
 

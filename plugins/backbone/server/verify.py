@@ -14,19 +14,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import torch
 
 from plugins.backbone.engine.grammar import allowed
-from plugins.backbone.engine.job import Draft, Job
+from plugins.backbone.engine.job import Job
 from plugins.backbone.engine.records import Answer, Request
 from plugins.backbone.engine.scoring import score_chunks
+from plugins.backbone.server.pictures import Shown
+from plugins.backbone.server.proposal import Proposal
 from plugins.backbone.server.protocol import Speaker, Top
 from plugins.backbone.server.rows import allowed_tokens, chosen_from, even, rivals, unknown
 
-_SHORTEST = 4
-_LONGEST_IDLE = 15
 _NAMED_AT_LAST = 64
 """Up to how many values are asked for by name where the largest top k does not decide."""
 _WIDER = 16
@@ -70,19 +69,20 @@ class Verifier:
         """The answer and what it took. Raises the engine's faults and the server's errors."""
         job, count = Job(request), Count()
         rows = [prompt.ids for prompt in request.prompts]
-        schema = request.grammar.schema if request.grammar else None
-        proposal = Proposal(self, job, rows[0], schema, count)
+        proposal = Proposal(self.speaker, job, rows[0], (self.draft_tokens, self.top))
         job.draft = proposal
         job.begin()
         while not job.finished:
             self._round(job, rows, proposal, count)
+        count.drafts = proposal.drafts
         return job.answer, count
 
     def _round(self, job: Job, rows: Sequence[Sequence[int]], proposal: Proposal, count: Count) -> None:
         proposal.fill()
         chunk = job.chunk(self.draft_tokens)
         behind = [*job.answer.ids, *job.guesses]
-        places = self._places(rows, behind, len(chunk) + job.closing + proposal.estimated, self.top)
+        needed = len(chunk) + job.closing + proposal.estimated
+        places = self._places(rows, behind, needed, self.top, proposal.told(behind, needed))
         places = places[:-1] if job.closing else places
         count.rounds += 1
         if proposal.estimated:
@@ -112,9 +112,18 @@ class Verifier:
         right = next((i for i, guess in enumerate(guesses) if guess != one.result.picked[i]), len(guesses))
         return guesses, one.result.picked[: right + 1]
 
-    def _places(self, rows: Sequence[Sequence[int]], behind: Sequence[int], count: int, top: int) -> list[Place]:
-        """The last `count` places of both rows, asked for at once."""
-        found = self.speaker.tops_of(rows, behind, count, top)
+    def _places(
+        self,
+        rows: Sequence[Sequence[int]],
+        behind: Sequence[int],
+        count: int,
+        top: int,
+        told: Sequence[Top] | None = None,
+    ) -> list[Place]:
+        """The last `count` places of both rows, asked for at once; the first row's not if they are `told` already."""
+        asked = rows if told is None else rows[1:]
+        found = self.speaker.tops_of(asked, behind, count, top) if asked else []
+        found = found if told is None else [list(told), *found]
         return [Place(found[0][i], found[1][i] if len(rows) > 1 else None) for i in range(count)]
 
     # ------------------------------------------------------------------ a top k that is too small
@@ -124,6 +133,8 @@ class Verifier:
         """Makes certain every place up to the first whose choice is not the guess, as far as the server allows."""
         masks = self._peek(job)
         first = len(places) - len(job.guesses) - 1
+        if self.speaker.at_once and _plain(rows):
+            self._name_all(job, rows, behind, places, masks)
         for i in range(len(job.guesses) + 1):
             if masks is not None and i >= len(masks):
                 return
@@ -134,6 +145,30 @@ class Verifier:
                 places[first + i] = place = self._widened(job, rows, behind[:cut], place, may, count)
             if i < len(job.guesses) and self._greedy(job, place, may) not in (job.guesses[i], None):
                 return
+
+    def _name_all(
+        self,
+        job: Job,
+        rows: Sequence[Sequence[int]],
+        behind: Sequence[int],
+        places: list[Place],
+        masks: torch.Tensor | None,
+    ) -> None:
+        """Asks at once for the values on which choices depend, up to the first that is surely not the guess."""
+        first, found = len(places) - len(job.guesses) - 1, dict[int, list[int]]()
+        for i in range(len(job.guesses) + 1 if masks is None else min(len(job.guesses) + 1, len(masks))):
+            may = None if masks is None else masks[i]
+            doubts = self._doubts(job, places[first + i], may)
+            found |= {i: doubts} if 0 < len(doubts) <= self.speaker.named else {}
+            if i < len(job.guesses) and not doubts and self._greedy(job, places[first + i], may) != job.guesses[i]:
+                break
+        tokens = sorted({token for doubts in found.values() for token in doubts})
+        if len(found) < 2 or len(tokens) > self.speaker.named:
+            return
+        cuts = [behind[: len(behind) - len(job.guesses) + i] for i in found]
+        told = self.speaker.exact_of([[*row, *cut] for cut in cuts for row in rows], tokens)
+        for n, i in enumerate(found):
+            places[first + i] = _with_known(places[first + i], told[n * len(rows) : (n + 1) * len(rows)])
 
     def _widened(
         self,
@@ -154,6 +189,8 @@ class Verifier:
             (place,) = self._places(rows, behind, 1, top)
         if (doubts := self._doubts(job, place, may)) and self.speaker.named < len(doubts) <= _NAMED_AT_LAST:
             place = self._named(rows, behind, place, doubts)
+        elif doubts and self.speaker.at_once:
+            place = self._named(rows, behind, place, _contenders(place, may)[: self.speaker.named])
         count.widened += 1
         count.open += bool(self._doubts(job, place, may))
         return place
@@ -161,6 +198,9 @@ class Verifier:
     def _named(self, rows: Sequence[Sequence[int]], behind: Sequence[int], place: Place, tokens: list[int]) -> Place:
         """The place with the exact values of given tokens, where the protocol tells them."""
         found = [top for top in (place.with_context, place.without_context) if top is not None]
+        missing = sorted({token for top in found for token in unknown(tokens, top)})
+        if self.speaker.at_once and 0 < len(missing) <= self.speaker.named and _plain(rows):
+            return _with_known(place, self.speaker.exact_of([[*row, *behind] for row in rows], missing))
         for i, top in enumerate(found):
             if missing := unknown(tokens, top):
                 found[i] = top.with_known(self.speaker.exact(rows[i], behind, missing))
@@ -201,64 +241,23 @@ def _correct(answer: Answer, at: int, place: Place, token: int) -> None:
         answer.without_context[at] = place.without_context.known[token]
 
 
+def _contenders(place: Place, may: torch.Tensor | None) -> list[int]:
+    """Tokens that either row tells and the grammar allows: where too many could win, one of them most likely does."""
+    told = {**place.with_context.known, **(place.without_context.known if place.without_context else {})}
+    return [token for token in told if may is None or bool(may[token])]
+
+
+def _with_known(place: Place, told: Sequence[Mapping[int, float]]) -> Place:
+    """A place with further values, row by row."""
+    without = None if place.without_context is None else place.without_context.with_known(told[-1])
+    return Place(place.with_context.with_known(told[0]), without)
+
+
+def _plain(rows: Sequence[Sequence[int]]) -> bool:
+    """Whether no row sees a picture: their texts alone are the whole of what the server reads."""
+    return not any(isinstance(row, Shown) for row in rows)
+
+
 def _is_estimated(place: Place, token: int) -> bool:
     """Whether a token was chosen whose value the server did not tell."""
     return bool(unknown([token], place.with_context) or unknown([token], place.without_context))
-
-
-class Proposal(Draft):
-    """The draft of an answer: what the server writes, the rest of it behind a replaced token, else a new one."""
-
-    def __init__(
-        self, verifier: Verifier, job: Job, prompt: Sequence[int], schema: Mapping[str, Any] | None, count: Count
-    ) -> None:
-        super().__init__([])
-        self.verifier, self.job, self.prompt, self.schema, self.count = verifier, job, prompt, schema, count
-        self.length = verifier.draft_tokens
-        self.missed = True
-        """The next token of the last draft was wrong: the server writes a new one."""
-        self.useless = self.idle = 0
-        self.estimated = False
-        """The last token's log-probabilities are estimates, to be corrected with the next places."""
-
-    def fill(self) -> None:
-        """Asks the server for a new draft if nothing is left of the last one or its next token was wrong.
-
-        A server that writes what the grammar forbids at once is asked less and less often.
-        """
-        job = self.job
-        room = job.request.max_new_tokens - len(job.answer.ids) - 1
-        if job.closing or room <= 0 or not (self.missed or not self._allowed()):
-            return
-        if self.idle:
-            self.idle -= 1
-            self.earlier = []
-            return
-        drafted = self.verifier.speaker.draft(self.prompt, job.answer.ids, min(self.length, room), self.schema)
-        self.count.drafts += 1
-        self.earlier, self.at, self.missed = [t for t in drafted if t not in job.request.eos], 0, False
-        self.useless = 0 if self._allowed() else self.useless + 1
-        self.idle = min(2**self.useless - 1, _LONGEST_IDLE)
-
-    def guess(self, limit: int) -> list[int]:
-        """The next tokens of the draft, at most `limit`, up to the first that the grammar forbids."""
-        return self._allowed()[: max(0, limit)]
-
-    def judge(self, guessed: int, right: int) -> None:
-        """Makes the next draft longer after success, shorter after failure, and says whether a new one is needed."""
-        if not guessed:
-            return
-        longest = self.verifier.draft_tokens
-        self.missed = right == 0
-        self.length = longest if right == guessed else min(longest, max(2 * right + 2, _SHORTEST))
-
-    def _allowed(self) -> list[int]:
-        rest, track, taken = self.earlier[self.at :], self.job.track, 0
-        if track is None:
-            return rest
-        for token in rest:
-            if track.done or not track.take(token):
-                break
-            taken += 1
-        track.back(taken)
-        return rest[:taken]

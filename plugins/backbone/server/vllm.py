@@ -1,7 +1,9 @@
 """vLLM's completions: prompts as token ids, `prompt_logprobs` for a given text, `structured_outputs` for drafts.
 
 The server's limit of the top k is its option --max-logprobs (20 unless set, -1 the whole vocabulary). A request with
-prompt_logprobs does not read the server's prefix cache: it computes its prompt again. Pictures need the server's
+prompt_logprobs does not read the server's prefix cache: it computes its prompt again. So drafts are asked for with
+their own log-probabilities, values outside the top k by `logprob_token_ids` where the server knows that field, and a
+few places behind a long text as the next tokens of its beginnings, which the cache holds. Pictures need the server's
 scale-out pages (VLLM_ENABLE_SCALE_OUT_ENDPOINTS=1), which render a chat into token ids with features and take both
 back.
 """
@@ -9,10 +11,11 @@ back.
 from __future__ import annotations
 
 import re
+from collections import deque
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from plugins.backbone.server.http import ServerHttp, body_of, said
+from plugins.backbone.server.http import ServerHttp, body_of, listed, said, tokenized
 from plugins.backbone.server.pictures import Content, Shown, sampling
 from plugins.backbone.server.protocol import Offer, Schema, Speaker, Top
 from sgcad_core.errors import ConfigError
@@ -21,21 +24,37 @@ _LIMITS = (5000, 1000, 500, 200, 100, 50, 20, 10, 5, 1)
 _ALLOWED = re.compile(r"max(?:imum)? allowed:? (\d+)")
 _RENDER, _GENERATE = "v1/chat/completions/render", "inference/v1/generate"
 _TOKEN_ID = "token_id:"  # noqa: S105 - vLLM's spelling of a token's number
+_BLOCK = 16
+"""Tokens of a block of vLLM's prefix cache: what a next token may cost behind a cached text."""
+_NAMED = 128
+"""vLLM's limit of logprob_token_ids."""
+_REMEMBERED = 64
+_CERTAIN = -1e-3
+"""Of two tokens in nats at least one is below this, unless a mask made each the only one."""
 
 
 class Vllm(Speaker):
     """Speaks to one vLLM server."""
 
-    named = 0  # each value by name takes a prompt of its own, computed from its beginning
-
     def __init__(self, http: ServerHttp, model: str) -> None:
         self.http = http
         self.model = model
+        self.at_once = False
+        self.named = 0
+        """Without logprob_token_ids each value takes a prompt of its own, computed from its beginning."""
+        self.unmasked = False
+        """Whether log-probabilities of a masked choice are those before the mask (logprobs_mode raw_logprobs)."""
+        self.read: deque[int] = deque(maxlen=_REMEMBERED)
+        """Hashes of the prompts that the server has read lately: their beginnings are in its cache."""
 
     def offer(self) -> Offer:
         """Asks for the model's name and window, then for prompt log-probabilities with ever smaller k."""
         name, window = listed(self.http, self.model)
-        return Offer(name, window, self._most())
+        offer = Offer(name, window, self._most())
+        self.at_once = self._tells_named()
+        self.named = _NAMED if self.at_once else 0
+        self.unmasked = self._tells_unmasked()
+        return offer
 
     def spelled(self, text: str) -> list[int] | None:
         """Tokens by the page /tokenize."""
@@ -43,37 +62,72 @@ class Vllm(Speaker):
 
     def draft(self, prompt: Sequence[int], behind: Sequence[int], limit: int, schema: Schema) -> list[int]:
         """Greedy tokens, at the start of an answer guided by the schema in compact JSON."""
-        body: dict[str, Any] = {}
-        if schema is not None and not behind:
-            body["structured_outputs"] = {"json": dict(schema), "disable_any_whitespace": True}
         if isinstance(prompt, Shown):
-            return [
-                int(token) for token in self._seen(prompt, behind, sampling(limit, body))["choices"][0]["token_ids"]
-            ]
-        body |= {"max_tokens": limit, "return_token_ids": True}
-        (choice,) = self._choices([[*prompt, *behind]], body)
+            found = self._seen(prompt, behind, sampling(limit, _guide(behind, schema)))
+            return [int(token) for token in found["choices"][0]["token_ids"]]
+        return self._drafted(prompt, behind, limit, _guide(behind, schema))[0]
+
+    def draft_told(
+        self, prompt: Sequence[int], behind: Sequence[int], limit: int, schema: Schema, top: int
+    ) -> tuple[list[int], list[Top]]:
+        """A draft and its places, if the server tells values before the mask; not with pictures."""
+        if isinstance(prompt, Shown) or not self.unmasked:
+            return self.draft(prompt, behind, limit, schema), []
+        more = {"logprobs": top, "return_tokens_as_token_ids": True}
+        ids, choice = self._drafted(prompt, behind, limit, {**_guide(behind, schema), **more})
+        told = (choice.get("logprobs") or {}).get("top_logprobs") or []
+        tops = [Top.of(self._named_pairs(place), top) for place in told]
+        return ids, tops if len(tops) == len(ids) else []
+
+    def _drafted(
+        self, prompt: Sequence[int], behind: Sequence[int], limit: int, more: Mapping[str, Any]
+    ) -> tuple[list[int], Mapping[str, Any]]:
+        (choice,) = self._choices([[*prompt, *behind]], {**more, "max_tokens": limit, "return_token_ids": True})
+        self.read.append(hash(tuple(prompt)))
         if (ids := choice.get("token_ids")) is None:
             raise ConfigError(
                 f"{self.http.url('v1/completions')} returned no token_ids though return_token_ids was set; use vLLM "
                 "0.10.2 or newer, or backbone 'hf_vision'"
             )
-        return [int(token) for token in ids]
+        return [int(token) for token in ids], choice
 
     def tops(self, prompt: Sequence[int], behind: Sequence[int], count: int, top: int) -> list[Top]:
         """One request: the last `count` - 1 tokens by prompt_logprobs, the next one by logprobs."""
         return self.tops_of([prompt], behind, count, top)[0]
 
     def tops_of(self, prompts: Sequence[Sequence[int]], behind: Sequence[int], count: int, top: int) -> list[list[Top]]:
-        """One request with a prompt for each row; a row that sees pictures has a request of its own."""
-        if any(isinstance(prompt, Shown) for prompt in prompts) and len(prompts) > 1:
+        """One request with a prompt for each row; rows that differ in what is cheapest have a request each."""
+        kinds = {self._way(prompt, behind, count) for prompt in prompts}
+        if len(prompts) > 1 and (len(kinds) > 1 or any(isinstance(prompt, Shown) for prompt in prompts)):
             return super().tops_of(prompts, behind, count, top)
         if isinstance(prompts[0], Shown):
             return [self._seen_tops(prompts[0], behind, count, top)]
         asked = {"max_tokens": 1, "logprobs": top, "return_tokens_as_token_ids": True}
+        if kinds == {"beginnings"}:
+            return self._by_beginnings([[*prompt, *behind] for prompt in prompts], count, top)
         if count > 1:
             asked["prompt_logprobs"] = top
         choices = self._choices([[*prompt, *behind] for prompt in prompts], asked)
+        self.read.extend(hash(tuple(prompt)) for prompt in prompts)
         return [self._told(choice, count, top) for choice in choices]
+
+    def _by_beginnings(self, texts: Sequence[list[int]], count: int, top: int) -> list[list[Top]]:
+        """The last places of texts as next tokens, with the tokens that stand there by name where they are rare."""
+        asked = {"max_tokens": 1, "logprobs": top, "return_tokens_as_token_ids": True}
+        ends = [text[: len(text) - count + 1 + i] for text in texts for i in range(count)]
+        found = [self._next(choice, top) for choice in self._choices(ends, asked)]
+        stands = [texts[i // count][len(end) : len(end) + 1] for i, end in enumerate(ends)]
+        rare = [i for i, token in enumerate(stands) if token and token[0] not in found[i].known]
+        for some in (rare[i : i + self.named] for i in range(0, len(rare), self.named)):
+            told = self._by_name([ends[i] for i in some], sorted({stands[i][0] for i in some}))
+            for i, values in zip(some, told, strict=True):
+                found[i] = found[i].with_known({stands[i][0]: values[stands[i][0]]})
+        return [found[i * count : (i + 1) * count] for i in range(len(texts))]
+
+    def _way(self, prompt: Sequence[int], behind: Sequence[int], count: int) -> str:
+        """Whether some places of a text cost less as next tokens of its cached beginnings than by reading it all."""
+        cached = self.named and not isinstance(prompt, Shown) and hash(tuple(prompt)) in self.read
+        return "beginnings" if cached and 1 < count * _BLOCK < len(prompt) + len(behind) else "whole"
 
     def _told(self, choice: Mapping[str, Any], count: int, top: int) -> list[Top]:
         places = (choice.get("prompt_logprobs") or [])[1 - count :] if count > 1 else []
@@ -82,10 +136,12 @@ class Vllm(Speaker):
         return [*(Top.of(_pairs(place), top) for place in places), self._next(choice, top)]
 
     def exact(self, prompt: Sequence[int], behind: Sequence[int], tokens: Sequence[int]) -> dict[int, float]:
-        """One request with a prompt for each token: prompt_logprobs tell the token that stands there, whatever k."""
+        """One request for all by logprob_token_ids; without that field one with a prompt for each token."""
         known = [*prompt, *behind]
         if isinstance(prompt, Shown):
             return {token: self._seen_tops(prompt, [*behind, token], 2, 1)[0].known[token] for token in tokens}
+        if 0 < len(tokens) <= self.named:
+            return self.exact_of([known], tokens)[0]
         choices = self._choices([[*known, token] for token in tokens], {"max_tokens": 1, "prompt_logprobs": 1})
         last = [dict(_pairs(choice["prompt_logprobs"][-1])) for choice in choices]
         return {token: last[i][token] for i, token in enumerate(tokens)}
@@ -123,8 +179,13 @@ class Vllm(Speaker):
         choice = {"prompt_logprobs": found.get("prompt_logprobs"), "logprobs": {"top_logprobs": [listed]}}
         return self._told(choice, count, top)
 
-    def _choices(self, prompts: list[list[int]], body: Mapping[str, Any]) -> list[dict[str, Any]]:
-        sent = {"model": self.model, "prompt": prompts if len(prompts) > 1 else prompts[0], "temperature": 0, **body}
+    def _choices(self, prompts: Sequence[list[int]], body: Mapping[str, Any]) -> list[dict[str, Any]]:
+        sent = {
+            "model": self.model,
+            "prompt": list(prompts) if len(prompts) > 1 else prompts[0],
+            "temperature": 0,
+            **body,
+        }
         response = self.http.post("v1/completions", sent)
         found = body_of(response, "choices")
         if found is None:
@@ -137,9 +198,45 @@ class Vllm(Speaker):
     def _next(self, choice: Mapping[str, Any], top: int) -> Top:
         """The place behind the prompt, from the log-probabilities of the token that was written there."""
         told = (choice.get("logprobs") or {}).get("top_logprobs") or []
-        if not told or not all(name.startswith(_TOKEN_ID) for name in told[0]):
+        if not told:
             raise ConfigError(self._without("gave no logprobs by token ids"))
-        return Top.of(((int(name.removeprefix(_TOKEN_ID)), logp) for name, logp in told[0].items()), top)
+        return Top.of(self._named_pairs(told[0]), top)
+
+    def _named_pairs(self, place: Mapping[str, float]) -> list[tuple[int, float]]:
+        if not all(name.startswith(_TOKEN_ID) for name in place):
+            raise ConfigError(self._without("gave no logprobs by token ids"))
+        return [(int(name.removeprefix(_TOKEN_ID)), logp) for name, logp in place.items()]
+
+    def exact_of(self, texts: Sequence[list[int]], tokens: Sequence[int]) -> list[dict[int, float]]:
+        """One request for all texts and tokens, of which there may be at most `named`."""
+        found = self._by_name(texts, tokens)
+        return [{token: told[token] for token in tokens} for told in found]
+
+    def _by_name(self, texts: Sequence[list[int]], tokens: Sequence[int]) -> list[dict[int, float]]:
+        asked = {"logprobs": 1, "logprob_token_ids": list(tokens), "return_tokens_as_token_ids": True}
+        choices = self._choices(texts, {"max_tokens": 1, **asked})
+        return [dict(self._next(choice, 0).known) for choice in choices]
+
+    def _tells_named(self) -> bool:
+        """Whether the server knows logprob_token_ids (vLLM of mid-2026): older ones refuse or ignore it."""
+        body = {"model": self.model, "prompt": [1, 1], "max_tokens": 1, "temperature": 0, "logprobs": 1}
+        more = {"logprob_token_ids": [0, 1, 2, 3], "return_tokens_as_token_ids": True}
+        return {0, 1, 2, 3} <= set(self._probed({**body, **more}))
+
+    def _tells_unmasked(self) -> bool:
+        """Whether a token that alone is allowed keeps its own value: with logprobs_mode processed it has 0."""
+        body = {"model": self.model, "prompt": [1, 1], "max_tokens": 1, "temperature": 0, "logprobs": 1}
+        told = [
+            self._probed({**body, "allowed_token_ids": [token], "return_tokens_as_token_ids": True}).get(token, 0.0)
+            for token in (0, 1)
+        ]
+        return min(told) < _CERTAIN
+
+    def _probed(self, body: Mapping[str, Any]) -> dict[int, float]:
+        """Log-probabilities at the one token of a request; empty if the server does not take it."""
+        response = self.http.status_of("v1/completions", body)
+        found = body_of(response, "choices") if response.status_code < 400 else None
+        return dict(self._next(found["choices"][0], 0).known) if found else {}
 
     def _without(self, what: str) -> str:
         return (
@@ -173,27 +270,11 @@ class Vllm(Speaker):
         return most
 
 
+def _guide(behind: Sequence[int], schema: Schema) -> dict[str, Any]:
+    if schema is None or behind:
+        return {}
+    return {"structured_outputs": {"json": dict(schema), "disable_any_whitespace": True}}
+
+
 def _pairs(place: Mapping[str, Any]) -> list[tuple[int, float]]:
     return [(int(token), float(told["logprob"])) for token, told in place.items()]
-
-
-def listed(http: ServerHttp, model: str) -> tuple[str, int | None]:
-    """The server's name of a model and its window, from /v1/models. Raises ConfigError if it has no such model."""
-    response = http.get("v1/models")
-    found = body_of(response, "data")
-    if found is None:
-        raise ConfigError(f"{http.url('v1/models')} lists no models but {said(response)}; mend backbone.base_url")
-    names = {str(one.get("id")): one for one in found["data"]}
-    if model not in names:
-        raise ConfigError(
-            f"backbone.model {model!r}: the server at {http.base_url} has {', '.join(names)}; use that name"
-        )
-    meta = names[model].get("meta") or {}
-    window = names[model].get("max_model_len") or meta.get("n_ctx") or meta.get("n_ctx_train")
-    return model, int(window) if window else None
-
-
-def tokenized(http: ServerHttp, body: Mapping[str, Any]) -> list[int] | None:
-    """A text's tokens by the page /tokenize; None if the server has no such page."""
-    found = body_of(http.status_of("tokenize", body), "tokens")
-    return [int(token) for token in found["tokens"]] if found else None

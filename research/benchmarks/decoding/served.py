@@ -81,7 +81,28 @@ class Pages:
         for asked in ("prompt_logprobs", "logprobs"):
             self._check_top(asked.replace("_", " "), body.get(asked))
         prompts = body["prompt"] if isinstance(body["prompt"][0], list) else [body["prompt"]]
-        return {"object": "text_completion", "choices": [self._choice(i, ids, body) for i, ids in enumerate(prompts)]}
+        next_only = body.get("prompt_logprobs") is None and int(body.get("max_tokens", 16)) == 1
+        rows = self._next_rows(prompts) if next_only else [None] * len(prompts)
+        choices = [self._choice(i, ids, body, rows[i]) for i, ids in enumerate(prompts)]
+        return {"object": "text_completion", "choices": choices}
+
+    def _next_rows(self, prompts: Sequence[list[int]]) -> list[Tensor]:
+        """Log-probabilities behind each prompt, in one batch; what is a beginning of another prompt is read once."""
+        groups: list[tuple[list[int], list[int]]] = []
+        for i in sorted(range(len(prompts)), key=lambda i: -len(prompts[i])):
+            longer = (same for ids, same in groups if prompts[i] == ids[: len(prompts[i])])
+            same = next(longer, None)
+            if same is None:
+                groups.append((prompts[i], same := []))
+            same.append(i)
+        texts = [(ids, len(ids) - len(prompts[same[-1]]) + 1) for ids, same in groups]
+        scored = self.model.scored_all(texts)
+        found = {
+            i: rows[len(prompts[i]) - len(ids) - 1]
+            for (ids, same), rows in zip(groups, scored, strict=True)
+            for i in same
+        }
+        return [found[i] for i in range(len(prompts))]
 
     def _check_top(self, what: str, asked: int | None) -> None:
         top = self.model.vocabulary if asked == -1 else asked or 0
@@ -90,28 +111,37 @@ class Pages:
                 400, f"Requested {what} of {top}, which is greater than max allowed: {self.model.limit}"
             )
 
-    def _choice(self, index: int, ids: list[int], body: Body) -> Body:
+    def _choice(self, index: int, ids: list[int], body: Body, row: Tensor | None) -> Body:
         model, limit = self.model, int(body.get("max_tokens", 16))
         if len(ids) + limit > model.window:
             raise HTTPException(400, f"This model's maximum context length is {model.window} tokens.")
         guided = (body.get("structured_outputs") or {}).get("json")
         asked, choice = body.get("prompt_logprobs"), Body(index=index, logprobs=None, prompt_logprobs=None)
-        if asked is None and limit > 1:
-            tokens, _ = model.written(ids, limit, guided)
-            rows = None
+        tops, rows = body.get("logprobs"), list[Tensor]()
+        if row is not None:
+            tokens, rows = self._allowed(row, body.get("allowed_token_ids")), [row]
+        elif asked is None:
+            tokens, rows = model.written(ids, limit, guided, told=tops is not None)
         else:
-            rows = model.scored(ids, len(ids) if asked is not None else 1)
-            tokens = [int(rows[-1].argmax())]
-        if asked is not None and rows is not None:
-            inside = [_entries(row, model.vocabulary if asked == -1 else asked, ids[i + 1]) for i, row in
-                      enumerate(rows[:-1])]  # fmt: skip
-            choice["prompt_logprobs"] = [None, *({str(t): {"logprob": v} for t, v in e} for e in inside)]
-        if body.get("logprobs") is not None and rows is not None:
-            told = {f"token_id:{t}": v for t, v in _entries(rows[-1], body["logprobs"], tokens[0])}
-            choice["logprobs"] = {"top_logprobs": [told]}
+            inside = model.scored(ids, len(ids))
+            places = [_entries(row, model.vocabulary if asked == -1 else asked, ids[i + 1]) for i, row in
+                      enumerate(inside[:-1])]  # fmt: skip
+            choice["prompt_logprobs"] = [None, *({str(t): {"logprob": v} for t, v in place} for place in places)]
+            tokens, rows = [int(inside[-1].argmax())], [inside[-1]]
+        if tops is not None:
+            named = body.get("logprob_token_ids") if model.tells_named else None
+            told = [
+                _named(at, named, t) if named else _entries(at, tops, t) for at, t in zip(rows, tokens, strict=True)
+            ]
+            choice["logprobs"] = {"top_logprobs": [{f"token_id:{t}": v for t, v in place} for place in told]}
         ended = bool(tokens) and tokens[-1] in model.eos
         text = model.bytes(tokens).decode("utf-8", errors="replace")
         return {**choice, "text": text, "token_ids": tokens, "finish_reason": "stop" if ended else "length"}
+
+    @staticmethod
+    def _allowed(row: Tensor, allowed: list[int] | None) -> list[int]:
+        """The most likely token, of all or of the allowed ones."""
+        return [int(row.argmax()) if allowed is None else max(allowed, key=lambda token: float(row[token]))]
 
     def render(self, body: Body) -> Body:
         """vLLM's rendering of one user's turn: token ids, and features that `tokens_out` takes back."""
@@ -178,6 +208,11 @@ def _entries(row: Tensor, top: int, token: int) -> list[tuple[int, float]]:
     """The most likely tokens, and the one that stands there if it is not among them."""
     found = {int(t): float(v) for v, t, _ in _tops(row, top)}
     return list({**found, token: float(row[token])}.items())
+
+
+def _named(row: Tensor, named: Sequence[int], token: int) -> list[tuple[int, float]]:
+    """The values of given tokens, and of the one that was written."""
+    return [(t, float(row[t])) for t in dict.fromkeys([*named, token])]
 
 
 def _tops(row: Tensor, top: int) -> list[list[Any]]:

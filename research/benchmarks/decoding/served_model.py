@@ -19,8 +19,9 @@ from torch import Tensor
 
 from plugins.backbone.engine.families import family_of
 from plugins.backbone.engine.grammar import GrammarCompiler, GrammarState, allowed
+from plugins.backbone.engine.prefix import prompt_key
 from plugins.backbone.engine.records import Picture, Prompt
-from plugins.backbone.engine.runner import Runner
+from plugins.backbone.engine.runner import Row, Runner
 from plugins.backbone.hf_load import load
 from plugins.backbone.hf_prompt import Prompter
 from plugins.backbone.hf_run import end_tokens
@@ -41,6 +42,8 @@ class ServedModel:
         self.maker = GrammarCompiler(self.tokenizer, self.vocabulary, sorted(self.eos))
         self.window = window
         self.most = most
+        self.tells_named = True
+        """Whether values of tokens are told by name, as newer servers of vLLM do."""
         self.lock = threading.Lock()
         self.seconds = 0.0
         """Processor seconds of the thread that ran the model."""
@@ -68,13 +71,33 @@ class ServedModel:
 
     def scored(self, ids: Sequence[int], count: int, pictures: Sequence[Picture] = ()) -> Tensor:
         """Log-probabilities at the last `count` places of a text, (count, vocabulary) in nats."""
+        return self.scored_all([(ids, count)], pictures)[0]
+
+    def scored_all(self, texts: Sequence[tuple[Sequence[int], int]], pictures: Sequence[Picture] = ()) -> list[Tensor]:
+        """The same of several texts in one batch, as far as their beginnings are in the cache."""
         with self.lock, torch.inference_mode():
             started = time.thread_time()
-            row = self.runner.open(Prompt(list(ids[: len(ids) - count + 1]), pictures))
-            (logits,) = self.runner.step([(row, list(ids[len(ids) - count :]))])
-            self.runner.close(row)
+            chunks = [self._opened(ids, count, pictures) for ids, count in texts]
+            logits = self.runner.step([(row, list(rest)) for row, rest in chunks])
+            for (row, rest), (ids, _) in zip(chunks, texts, strict=True):
+                row.length += len(rest)
+                self.runner.keep(row, ids[len(row.prompt.ids) :])
+            for row, _ in reversed(chunks):
+                self.runner.close(row)
             self.seconds += time.thread_time() - started
-            return logits.float().log_softmax(-1)
+            return [one[-count:].float().log_softmax(-1) for one, (_, count) in zip(logits, texts, strict=True)]
+
+    def _opened(self, ids: Sequence[int], count: int, pictures: Sequence[Picture]) -> tuple[Row, Sequence[int]]:
+        """A row with what is cached of a text, before its last `count` places at most, and the tokens to feed."""
+        start = len(ids) - count + 1
+        start = start if pictures else min(start, self._kept(ids) + 1)
+        return self.runner.open(Prompt(list(ids[:start]), pictures)), ids[start - 1 :]
+
+    def _kept(self, ids: Sequence[int]) -> int:
+        """How many first tokens of a text are in the cache."""
+        prompt = Prompt(list(ids), ())
+        found = self.runner.prefixes.longest(self.runner.family.salt(prompt), prompt_key(ids, [], []))
+        return found[1] if found else 0
 
     def written(
         self,
@@ -83,20 +106,21 @@ class ServedModel:
         schema: Mapping[str, Any] | None = None,
         text: Sequence[int] = (),
         pictures: Sequence[Picture] = (),
+        told: bool = False,
     ) -> tuple[list[int], list[Tensor]]:
-        """Greedy tokens behind a text, the end token included, with the log-probabilities at each one's place.
+        """Greedy tokens behind a text, the end token included, with the log-probabilities before the mask at each.
 
-        A schema, or tokens that alone may be written, masks the choice; forced tokens of a schema cost no pass of their
-        own and have no log-probabilities.
+        A schema, or tokens that alone may be written, masks the choice. Forced tokens of a schema cost no pass of their
+        own; those at the end have log-probabilities only if all are to be `told`, by one more pass.
         """
         with self.lock, torch.inference_mode():
             started = time.thread_time()
-            found = self._write(Prompt(list(ids), pictures), limit, schema, text)
+            found = self._write(Prompt(list(ids), pictures), limit, schema, text, told)
             self.seconds += time.thread_time() - started
             return found
 
     def _write(
-        self, prompt: Prompt, limit: int, schema: Mapping[str, Any] | None, text: Sequence[int]
+        self, prompt: Prompt, limit: int, schema: Mapping[str, Any] | None, text: Sequence[int], told: bool
     ) -> tuple[list[int], list[Tensor]]:
         track = self.maker.grammar(schema).track() if schema is not None else None
         row = self.runner.open(prompt)
@@ -107,7 +131,7 @@ class ServedModel:
         while len(found) < limit and not (track and track.done):
             (logits,) = self.runner.step([(row, pending)])
             row.length += len(pending)
-            rows.append(logits[-1].float().log_softmax(-1))
+            rows += logits.float().log_softmax(-1)
             token = int(self._masked(rows[-1], track, text, len(found)).argmax())
             pending = [token]
             found.append(token)
@@ -116,9 +140,13 @@ class ServedModel:
             if track:
                 forced = track.forced()
                 found, pending = [*found, *forced], [*pending, *forced]
+        if told and len(rows) < len(found):
+            (logits,) = self.runner.step([(row, pending)])
+            row.length += len(pending)
+            rows += logits[:-1].float().log_softmax(-1)
         self.runner.keep(row, found)
         self.runner.close(row)
-        return found[:limit], rows
+        return found[:limit], rows[:limit]
 
     def _masked(self, row: Tensor, track: GrammarState | None, text: Sequence[int], written: int) -> Tensor:
         may = torch.ones(self.vocabulary, dtype=torch.bool)

@@ -238,10 +238,14 @@ def table(name: str, protocol: str, rows: Iterable[tuple[Arm, Found]]) -> Iterat
         equal += found.equal
         lists = (found.tokens, found.rounds, found.requests)
         middle = [f"{statistics.median(numbers or [0]):.3g}" for numbers in lists]
-        ratios = [f"{statistics.median(numbers or [0]):.2f}" for numbers in (found.seconds, found.passes)]
+        ratios = [
+            f"{statistics.median(n):.2f} ({min(n):.2f}, {max(n):.2f})" if n else ""
+            for n in (found.seconds, found.passes)
+        ]
         cells = [arm.name, str(len(found.equal)), str(sum(found.equal)), *middle, str(sum(found.open)), *ratios]
         yield f"| {' | '.join(cells)} |"
-    yield f"\n{sum(equal)} of {len(equal)} answers have the tokens of the answer in process; columns hold medians."
+    yield f"\n{sum(equal)} of {len(equal)} answers have the tokens of the answer in process; columns hold medians,"
+    yield "those of costs also the least and the most."
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

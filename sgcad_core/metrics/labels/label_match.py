@@ -8,14 +8,17 @@ Knows no file.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from sgcad_core.kinds import FOUR_LEG
 from sgcad_core.metrics.labels.motion_label_match import Path, motion_marks
 from sgcad_core.roads.lane_graph import RoadCounts, road_counts
 
-NETWORK_FIELDS = ("intersection_count_error", "lane_count_error", "connectivity_error")
+NETWORK_FIELDS = (
+    "intersection_count_error", "lane_count_error", "segment_count_error", "segment_lanes_error", "connectivity_error",
+)  # fmt: skip
 """Errors; each also stands as `<name>_any`, 1 where there is any."""
 _LEGS = {"t": 3, FOUR_LEG: 4}
 
@@ -44,7 +47,7 @@ def compare(label: Label, made: GeneratedCase | None) -> dict[str, float]:
     """
     roads = made.roads if made else None
     return {
-        **_network_errors(truth_figures(label), roads),
+        **_network_errors(truth_figures(label), truth_chains(label), roads),
         **_coded_roads(label, roads),
         **motion_marks(label, made.paths if made else {}),
     }
@@ -56,6 +59,12 @@ def truth_figures(label: Label) -> TruthFigures:
     lanes = truth_lanes(label)
     mean = road_counts(lanes).figures.mean_lanes if lanes else None
     return TruthFigures(network.get("intersections"), network.get("components"), mean)
+
+
+def truth_chains(label: Label) -> tuple[tuple[int, int], ...]:
+    """Lanes there and back of each contracted segment of a label; empty where it has none."""
+    lanes = truth_lanes(label)
+    return road_counts(lanes).chains if lanes else ()
 
 
 def truth_lanes(label: Label) -> dict[tuple[str, str], int]:
@@ -79,7 +88,9 @@ def any_error(error: float) -> float:
     return float(error > 1e-6)
 
 
-def _network_errors(truth: TruthFigures, roads: RoadCounts | None) -> dict[str, float]:
+def _network_errors(
+    truth: TruthFigures, chains: Sequence[tuple[int, int]], roads: RoadCounts | None
+) -> dict[str, float]:
     found: dict[str, float] = {}
     made = roads.figures if roads else None
     if truth.intersections is not None:
@@ -87,9 +98,27 @@ def _network_errors(truth: TruthFigures, roads: RoadCounts | None) -> dict[str, 
         found["intersection_count_error"] = error
     if truth.mean_lanes:
         found["lane_count_error"] = relative_error(truth.mean_lanes, made.mean_lanes) if made else 1.0
+    found |= _segment_errors(chains, roads)
     if truth.components:
         found["connectivity_error"] = float(made is None or made.components != truth.components)
     return found | {f"{name}_any": any_error(error) for name, error in found.items()}
+
+
+def _segment_errors(truth: Sequence[tuple[int, int]], roads: RoadCounts | None) -> dict[str, float]:
+    """The other half of the lane count error: how many segments, and where that is right, the lanes of each.
+
+    Segments have no names in common, so each of the truth has to find one of its own with the same lanes, whichever
+    way it runs: the error is the share that finds none. The paper gives no formula for it.
+    """
+    if not truth:
+        return {}
+    if roads is None:
+        return {"segment_count_error": 1.0, "segment_lanes_error": 1.0}
+    found = {"segment_count_error": relative_error(len(truth), len(roads.chains))}
+    if len(truth) == len(roads.chains):
+        wanted, made = (Counter(tuple(sorted(both)) for both in chains) for chains in (truth, roads.chains))
+        found["segment_lanes_error"] = 1.0 - (wanted & made).total() / len(truth)
+    return found
 
 
 def _coded_roads(label: Label, roads: RoadCounts | None) -> dict[str, float]:

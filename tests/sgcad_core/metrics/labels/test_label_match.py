@@ -73,6 +73,15 @@ def test_a_half_wrong_network_has_half_an_error_and_counts_as_wrong():
     assert found["intersection_count_error_any"] == 0.0
 
 
+def test_segments_are_counted_and_compared_one_by_one_where_their_number_is_right():
+    turned = {("J", "a"): 2, ("a", "J"): 1, ("b", "J"): 2, ("J", "b"): 2, ("c", "J"): 2, ("J", "c"): 1}
+    found = compare(LABEL, RIGHT._replace(roads=road_counts(turned)))
+    assert (found["segment_count_error"], found["segment_lanes_error"]) == (0.0, pytest.approx(1 / 3))
+    four = compare(LABEL, RIGHT._replace(roads=star({"a": 2, "b": 1, "c": 1, "d": 1})))
+    assert four["segment_count_error"] == pytest.approx(1 / 3)
+    assert "segment_lanes_error" not in four
+
+
 def test_what_a_label_leaves_open_is_not_judged():
     bare = {"network": {"intersections": None, "components": None}}
     assert compare(bare, RIGHT) == {}
@@ -145,7 +154,8 @@ def test_every_figure_is_the_public_scorers_to_the_digit(tmp_path):
         theirs = public.score_case(tmp_path / file.stem, label)
         result = json.loads((tmp_path / file.stem / "result.json").read_text())
         ours = compare(label, made_of(tmp_path / file.stem, result))
-        assert {THEIRS.get(k, k): v for k, v in ours.items() if not k.endswith("error_any")} == {
+        shared = {k: v for k, v in ours.items() if not k.endswith("error_any") and not k.startswith("segment")}
+        assert {THEIRS.get(k, k): v for k, v in shared.items()} == {
             k: v for k, v in theirs.items() if k not in ("generated", "intersections_exact", "lanes_exact")
         }, file.stem
         if "intersections_exact" in theirs:

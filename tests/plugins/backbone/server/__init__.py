@@ -1,0 +1,1 @@
+"""Servers as backbones: their protocols, drafts and values."""
