@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from flows.player.player_data import View, traffic_shown
-from flows.player.sentence_marks import Place
+from flows.player.sentence_marks import Place, ToldSentence, told_sentences
 from sgcad_core.case.traffic import Background
 
 HERE = Path(__file__).parent
@@ -37,6 +37,12 @@ def page_among(page: str, traffic: Background) -> str:
     if found is None:
         raise ValueError("it has no data of a player")
     return _page(json.loads(found[1]) | {"traffic": traffic_shown(traffic)})
+
+
+def told_in(page: str, result: Mapping[str, Any]) -> list[ToldSentence]:
+    """The sentences of a case, with their places in the narrative as a player's page (or "") shows it."""
+    items = (result.get("account") or {}).get("items") or ()
+    return told_sentences(result.get("facts") or (), items, shown_in(page))
 
 
 def shown_in(page: str) -> Callable[[Place], Place]:

@@ -40,11 +40,8 @@ class Scored(NamedTuple):
     def _wrong(self) -> Iterator[str]:
         for field, cases in self.marks.items():
             for case, marks in cases.items():
-                if not field.startswith(_ERRORS) and min(marks) < 1.0:
+                if not field.startswith(NETWORK_FIELDS) and min(marks) < 1.0:
                     yield f"{case}: {field} {', '.join(f'{m:g}' for m in marks)}"
-
-
-_ERRORS = NETWORK_FIELDS
 
 
 def score(

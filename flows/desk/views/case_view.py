@@ -15,8 +15,8 @@ from flows.desk.views.attempts import Attempt, attempts_of
 from flows.desk.views.field_words import name_of, shown
 from flows.desk.views.folder_files import FILES, diagrams_of, is_there, odd_files, text_of
 from flows.desk.views.list_rows import account_counts, contact_of, disagreements, doubts_of, notes_of
-from flows.player.player_page import shown_in
-from flows.player.sentence_marks import MARK_WORDS, ToldSentence, sentence_at, told_sentences
+from flows.player.player_page import told_in
+from flows.player.sentence_marks import MARK_WORDS, ToldSentence, sentence_at
 from sgcad_core.case.verdict_told import verdict_sentence
 
 
@@ -100,7 +100,7 @@ class CasePage:
 def page_of(folder: Path, result: Mapping[str, Any]) -> CasePage:
     """Read a case's folder. What is missing in it is left out."""
     facts = list(result.get("facts") or ())
-    told = told_of(result, text_of(folder, "player.html"))
+    told = told_in(text_of(folder, "player.html"), result)
     pieces, sentences = pieces_of(text_of(folder, "report.txt"), told)
     return CasePage(
         pieces=pieces, groups=tuple(groups_of(facts, sentences, doubts_of(result))), counts=account_counts(result),
@@ -128,12 +128,6 @@ def verdict_of(result: Mapping[str, Any]) -> str:
 
 
 # ------------------------------------------------------------------ the report
-def told_of(result: Mapping[str, Any], player: str) -> list[ToldSentence]:
-    """The sentences of a case with their places in the report as shown, which the page of its player knows."""
-    items = (result.get("account") or {}).get("items") or ()
-    return told_sentences(result.get("facts") or (), items, shown_in(player))
-
-
 def pieces_of(narrative: str, told: Iterable[ToldSentence]) -> tuple[tuple[Piece, ...], list[ToldSentence]]:
     """The narrative cut into its sentences and what stands between, and the sentences that are numbered so."""
     pieces, kept, at = list[Piece](), list[ToldSentence](), 0

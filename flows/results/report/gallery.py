@@ -18,8 +18,8 @@ from PIL import UnidentifiedImageError
 
 from flows.case.case_in_words import lacking_in_words
 from flows.player.player_data import COLORS
-from flows.player.player_page import shown_in
-from flows.player.sentence_marks import MARK_WORDS, told_sentences
+from flows.player.player_page import told_in
+from flows.player.sentence_marks import MARK_WORDS
 from flows.results.reading import FinishedCase, paths_of
 from flows.results.table import Tables, reference_of
 from sgcad_core.case.records import Floats
@@ -80,9 +80,7 @@ def _read(file: Path) -> str:
 
 def _told(ran: FinishedCase, chars: int) -> list[list[Any]]:
     """[start, end, mark] of each sentence of the text as shown that ends within so many characters."""
-    items = (ran.result.get("account") or {}).get("items") or ()
-    spans = shown_in(_read(ran.folder / "player.html"))
-    told = told_sentences(ran.result.get("facts") or (), items, spans)
+    told = told_in(_read(ran.folder / "player.html"), ran.result)
     return [[one.start, one.end, one.mark] for one in told if one.end <= chars]
 
 

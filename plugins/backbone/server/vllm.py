@@ -102,24 +102,21 @@ class Vllm(Speaker):
             return super().tops_of(prompts, behind, count, top)
         if isinstance(prompts[0], Shown):
             return [self._seen_tops(prompts[0], behind, count, top)]
-        asked = {"max_tokens": 1, "logprobs": top, "return_tokens_as_token_ids": True}
+        texts = [[*prompt, *behind] for prompt in prompts]
         if kinds == {"beginnings"}:
-            return self._by_beginnings([[*prompt, *behind] for prompt in prompts], count, top)
-        if count > 1:
-            asked["prompt_logprobs"] = top
-        choices = self._choices([[*prompt, *behind] for prompt in prompts], asked)
+            return self._by_beginnings(texts, count, top)
+        choices = self._choices(texts, _next_told(top) | ({"prompt_logprobs": top} if count > 1 else {}))
         self.read.extend(hash(tuple(prompt)) for prompt in prompts)
         return [self._told(choice, count, top) for choice in choices]
 
     def _by_beginnings(self, texts: Sequence[list[int]], count: int, top: int) -> list[list[Top]]:
         """The last places of texts as next tokens, with the tokens that stand there by name where they are rare."""
-        asked = {"max_tokens": 1, "logprobs": top, "return_tokens_as_token_ids": True}
         ends = [text[: len(text) - count + 1 + i] for text in texts for i in range(count)]
-        found = [self._next(choice, top) for choice in self._choices(ends, asked)]
+        found = [self._next(choice, top) for choice in self._choices(ends, _next_told(top))]
         stands = [texts[i // count][len(end) : len(end) + 1] for i, end in enumerate(ends)]
         rare = [i for i, token in enumerate(stands) if token and token[0] not in found[i].known]
         for some in (rare[i : i + self.named] for i in range(0, len(rare), self.named)):
-            told = self._by_name([ends[i] for i in some], sorted({stands[i][0] for i in some}))
+            told = self.exact_of([ends[i] for i in some], sorted({stands[i][0] for i in some}))
             for i, values in zip(some, told, strict=True):
                 found[i] = found[i].with_known({stands[i][0]: values[stands[i][0]]})
         return [found[i * count : (i + 1) * count] for i in range(len(texts))]
@@ -209,31 +206,22 @@ class Vllm(Speaker):
 
     def exact_of(self, texts: Sequence[list[int]], tokens: Sequence[int]) -> list[dict[int, float]]:
         """One request for all texts and tokens, of which there may be at most `named`."""
-        found = self._by_name(texts, tokens)
+        choices = self._choices(texts, _next_told(1) | {"logprob_token_ids": list(tokens)})
+        found = [self._next(choice, 0).known for choice in choices]
         return [{token: told[token] for token in tokens} for told in found]
-
-    def _by_name(self, texts: Sequence[list[int]], tokens: Sequence[int]) -> list[dict[int, float]]:
-        asked = {"logprobs": 1, "logprob_token_ids": list(tokens), "return_tokens_as_token_ids": True}
-        choices = self._choices(texts, {"max_tokens": 1, **asked})
-        return [dict(self._next(choice, 0).known) for choice in choices]
 
     def _tells_named(self) -> bool:
         """Whether the server knows logprob_token_ids (vLLM of mid-2026): older ones refuse or ignore it."""
-        body = {"model": self.model, "prompt": [1, 1], "max_tokens": 1, "temperature": 0, "logprobs": 1}
-        more = {"logprob_token_ids": [0, 1, 2, 3], "return_tokens_as_token_ids": True}
-        return {0, 1, 2, 3} <= set(self._probed({**body, **more}))
+        return {0, 1, 2, 3} <= set(self._probed({"logprob_token_ids": [0, 1, 2, 3]}))
 
     def _tells_unmasked(self) -> bool:
         """Whether a token that alone is allowed keeps its own value: with logprobs_mode processed it has 0."""
-        body = {"model": self.model, "prompt": [1, 1], "max_tokens": 1, "temperature": 0, "logprobs": 1}
-        told = [
-            self._probed({**body, "allowed_token_ids": [token], "return_tokens_as_token_ids": True}).get(token, 0.0)
-            for token in (0, 1)
-        ]
+        told = [self._probed({"allowed_token_ids": [token]}).get(token, 0.0) for token in (0, 1)]
         return min(told) < _CERTAIN
 
-    def _probed(self, body: Mapping[str, Any]) -> dict[int, float]:
-        """Log-probabilities at the one token of a request; empty if the server does not take it."""
+    def _probed(self, field: Mapping[str, Any]) -> dict[int, float]:
+        """Log-probabilities at the one token of a request with a field; empty if the server does not take it."""
+        body = {"model": self.model, "prompt": [1, 1], "temperature": 0, **_next_told(1), **field}
         response = self.http.status_of("v1/completions", body)
         found = body_of(response, "choices") if response.status_code < 400 else None
         return dict(self._next(found["choices"][0], 0).known) if found else {}
@@ -268,6 +256,11 @@ class Vllm(Speaker):
         if most < 1:
             raise ConfigError(self._without(f"takes no prompt_logprobs (its limit is {most})"))
         return most
+
+
+def _next_told(top: int) -> dict[str, Any]:
+    """The fields of a request for one token and its `top` log-probabilities by token ids."""
+    return {"max_tokens": 1, "logprobs": top, "return_tokens_as_token_ids": True}
 
 
 def _guide(behind: Sequence[int], schema: Schema) -> dict[str, Any]:

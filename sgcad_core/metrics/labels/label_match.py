@@ -47,7 +47,7 @@ def compare(label: Label, made: GeneratedCase | None) -> dict[str, float]:
     """
     roads = made.roads if made else None
     return {
-        **_network_errors(truth_figures(label), truth_chains(label), roads),
+        **_network_errors(label, roads),
         **_coded_roads(label, roads),
         **motion_marks(label, made.paths if made else {}),
     }
@@ -55,16 +55,19 @@ def compare(label: Label, made: GeneratedCase | None) -> dict[str, float]:
 
 def truth_figures(label: Label) -> TruthFigures:
     """Counts of a label; mean lanes come from its segments, contracted as a made network's are."""
+    return _figures(label, _truth_counts(label))
+
+
+def _figures(label: Label, counts: RoadCounts | None) -> TruthFigures:
     network = label["network"]
-    lanes = truth_lanes(label)
-    mean = road_counts(lanes).figures.mean_lanes if lanes else None
+    mean = counts.figures.mean_lanes if counts else None
     return TruthFigures(network.get("intersections"), network.get("components"), mean)
 
 
-def truth_chains(label: Label) -> tuple[tuple[int, int], ...]:
-    """Lanes there and back of each contracted segment of a label; empty where it has none."""
+def _truth_counts(label: Label) -> RoadCounts | None:
+    """Counts of a label's segments, contracted; None where it has none."""
     lanes = truth_lanes(label)
-    return road_counts(lanes).chains if lanes else ()
+    return road_counts(lanes) if lanes else None
 
 
 def truth_lanes(label: Label) -> dict[tuple[str, str], int]:
@@ -88,17 +91,17 @@ def any_error(error: float) -> float:
     return float(error > 1e-6)
 
 
-def _network_errors(
-    truth: TruthFigures, chains: Sequence[tuple[int, int]], roads: RoadCounts | None
-) -> dict[str, float]:
+def _network_errors(label: Label, roads: RoadCounts | None) -> dict[str, float]:
     found: dict[str, float] = {}
+    counts = _truth_counts(label)
+    truth = _figures(label, counts)
     made = roads.figures if roads else None
     if truth.intersections is not None:
         error = relative_error(truth.intersections, made.intersections) if made else 1.0
         found["intersection_count_error"] = error
     if truth.mean_lanes:
         found["lane_count_error"] = relative_error(truth.mean_lanes, made.mean_lanes) if made else 1.0
-    found |= _segment_errors(chains, roads)
+    found |= _segment_errors(counts.chains if counts else (), roads)
     if truth.components:
         found["connectivity_error"] = float(made is None or made.components != truth.components)
     return found | {f"{name}_any": any_error(error) for name, error in found.items()}

@@ -67,7 +67,7 @@ def _best(
     """The better of the encounter so far and those among some combinations, the cheapest combinations first."""
     for a, b in sorted(pairs, key=lambda pair: pair[0].cost + pair[1].cost):
         if best is not None and a.cost + b.cost >= best.cost:
-            continue
+            break
         if (a, b) not in known:
             known[a, b] = _meeting(a, b, wanted)
         found = known[a, b]

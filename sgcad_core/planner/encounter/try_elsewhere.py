@@ -95,9 +95,9 @@ def _like(found: Encounter, usual: Impact, *, again: bool) -> Iterator[tuple[Enc
 
 def _speeds(found: Encounter, *, again: bool) -> tuple[tuple[float, float], ...]:
     """Factors on the speeds of both, in the order in which they are tried."""
-    rests = [option.role.told.rest for option in (found.first, found.second)]
     if again:
         return (*_SPEEDS, *_SPEEDS_AGAIN)
+    rests = [option.role.told.rest for option in (found.first, found.second)]
     if any(rest.distance_m == AT_IMPACT_M for rest in rests):
         return (*_SPEEDS_SHORT, *_SPEEDS)
     aside = any(rest.side is not None and rest.where == "off_road" for rest in rests)

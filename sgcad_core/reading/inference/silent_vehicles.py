@@ -54,12 +54,14 @@ def ahead_in_queue(crash: CrashTold, inferred: CrashInferred, pairs: list[Contac
 
     So it was in 26 of 32 coded reports with "stopped behind" (CISS, those to learn from).
     """
+    if crash.roster.counted:
+        return
     rear_ends = {
         (v, b.other if v == b.actor else b.actor) for b in pairs for v in (b.actor, b.other)
         if tuple(end_of(zone) for zone in b.areas_of(v)) == ("front", "back")
     }  # fmt: skip
     for v in crash.roster.ids:
-        stood = [d.number for d in crash.motions[v].cues if d.kind == "stopped"] if not crash.roster.counted else []
+        stood = [d.number for d in crash.motions[v].cues if d.kind == "stopped"]
         for _, _, ahead, word in crash.motions[v].relations:
             if word != "behind" or ahead is None or ahead in inferred.told_maneuvers or (v, ahead) not in rear_ends:
                 continue

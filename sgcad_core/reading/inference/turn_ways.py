@@ -8,14 +8,8 @@ from __future__ import annotations
 from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold, end_of
 from sgcad_core.reading.motion.heading_lane_cues import TURNING_WAY
-from sgcad_core.reading.text.compass import between, turned
-from sgcad_core.records.specs import Compass, Maneuver
-
-_HANDS: dict[int, Maneuver] = {
-    45: "turn_right", 90: "turn_right", 135: "turn_right", 225: "turn_left", 270: "turn_left", 315: "turn_left",
-}  # fmt: skip
-"""By the clockwise angle from the way before the turn to the way after it."""
-_OPPOSITE = {"left": "right", "right": "left"}
+from sgcad_core.reading.text.compass import OPPOSITE_HAND, between, turned
+from sgcad_core.records.specs import Compass
 
 
 def turns_by_way(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
@@ -30,11 +24,11 @@ def turns_by_way(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactM
         start = inferred.headings[v]
         if v not in inferred.stated and between(start, end) % 180 == 0:
             start = _across(crash, inferred, pairs, v, end) or start
-        hand = _HANDS.get(between(start, end))
-        if hand is None:
+        angle = between(start, end)
+        if angle % 180 == 0:
             continue
         inferred.headings[v] = start
-        inferred.maneuvers[v] = hand
+        inferred.maneuvers[v] = "turn_right" if angle < 180 else "turn_left"
         inferred.told_maneuvers.add(v)
         inferred.sources[f"{v} maneuver"] = crash.motions[v].sources[f"exit {end}"]
 
@@ -62,5 +56,5 @@ def _across(
     if "back" in (own, theirs):
         return None
     met = inferred.headings[hit.other if hit.actor == vehicle else hit.actor]
-    came = crash.motions[vehicle].from_side or (theirs if theirs in _OPPOSITE else _OPPOSITE.get(own or ""))
+    came = crash.motions[vehicle].from_side or (theirs if theirs in OPPOSITE_HAND else OPPOSITE_HAND.get(own or ""))
     return turned(met, 90 if came == "left" else -90) if came and between(met, end) % 180 == 0 else turned(end, 90)

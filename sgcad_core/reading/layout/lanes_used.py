@@ -13,6 +13,7 @@ from typing import Any
 from sgcad_core.kinds import CHANGES, JOINING, RAMP, actor_kind
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.motion.motion_record import DRIVES
+from sgcad_core.reading.roads.lanes import LaneFacts
 from sgcad_core.reading.roads.road_facts import RoadFacts
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.text.compass import NAMES, between, turned
@@ -140,14 +141,17 @@ def _widened(facts: RoadFacts, layout: RoadLayout) -> tuple[RoadLayout, tuple[st
 
 def _counts(facts: RoadFacts, leg: Leg) -> bool:
     """Whether the story counts the lanes of a leg's road."""
-    told = (road.lanes for road in facts.streets if road.axis in (None, axis_of(leg.bearing)))
-    return any(lanes.total or lanes.each_way or lanes.toward for lanes in told)
+    return any(lanes.total or lanes.each_way or lanes.toward for lanes in _told(facts, leg))
 
 
 def _one_each_way(facts: RoadFacts, leg: Leg) -> bool:
     """Whether a leg's road is told to have two lanes, and those for two ways."""
-    told = (road.lanes for road in facts.streets if road.axis in (None, axis_of(leg.bearing)))
-    return any(lanes.total == 2 and (lanes.one_way is False or lanes.divided is False) for lanes in told)
+    return any(lanes.total == 2 and (lanes.one_way is False or lanes.divided is False) for lanes in _told(facts, leg))
+
+
+def _told(facts: RoadFacts, leg: Leg) -> Iterator[LaneFacts]:
+    """What is told of the lanes of the roads that a leg may be of."""
+    return (road.lanes for road in facts.streets if road.axis in (None, axis_of(leg.bearing)))
 
 
 def _changed(need: _Need, leg: Leg, legs: dict[Compass, Leg], facts: RoadFacts) -> Iterator[tuple[Compass, Leg]]:
@@ -175,8 +179,7 @@ def _changed(need: _Need, leg: Leg, legs: dict[Compass, Leg], facts: RoadFacts) 
 
 def _has_the_spare_lane(need: _Need, leg: Leg, facts: RoadFacts) -> bool:
     """Whether the lane that a need lacks is the spare one of an odd total, which the other direction was given."""
-    axis = axis_of(leg.bearing)
-    odd = any(road.lanes.total == leg.lanes_in + leg.lanes_out for road in facts.streets if road.axis in (None, axis))
+    odd = any(lanes.total == leg.lanes_in + leg.lanes_out for lanes in _told(facts, leg))
     short = not need.turn and need.lanes == leg.lanes_in + 1 == leg.lanes_out
     others = (v for v in facts.crash.vehicles if v.heading == leg.bearing)
     return odd and short and leg.median == "none" and all(_own(v) < leg.lanes_out for v in others)

@@ -207,8 +207,8 @@ def _subjects(text: str) -> Iterator[re.Match[str]]:
     for m in _SUBJECT.finditer(text):
         named = list(MENTION.finditer(text, m.start(), m.end())) if m.group("list") else []
         again = len(named) > 1 and len({n[0] for n in named}) == 1
-        alone = rule("clauses.one_alone").match(text, m.end()) and _BESIDE.search(text[: m.start()])
-        yield (_SUBJECT.match(text, named[-1].start()) or m) if again or (named and alone) else m
+        alone = named and rule("clauses.one_alone").match(text, m.end()) and _BESIDE.search(text[: m.start()])
+        yield (_SUBJECT.match(text, named[-1].start()) or m) if again or alone else m
 
 
 def _means_all(statement: Statement, pronoun: re.Match[str]) -> bool:

@@ -31,7 +31,7 @@ def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
     """Adds the headings and exits of a segment."""
     for turn in _TURNS:
         for m in turn.finditer(text):
-            _note_exit(motion, next(filter(None, map(m.groupdict().get, _WAYS))), turn.id)
+            _note_exit(motion, way_told(m), turn.id)
     text = rule("headings.turned_to").sub(lambda m: " " * len(m[0]), text)
     told = [(m, by) for by in (rule("headings.heading"), rule("headings.heading_bare")) for m in by.finditer(text)]
     for m, by in sorted(told, key=lambda found: found[0].start()):
@@ -39,7 +39,7 @@ def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
         gap = words.get("gap") or words.get("gap2") or ""
         faces = rule("headings.facing").search(m.group()) and not MENTION.search(gap.upper())
         if (faces or not rule("headings.gap_stops").search(gap)) and not _TURN_BEFORE.search(text[: m.start()]):
-            _note_heading(motion, next(filter(None, map(words.get, _WAYS)), ""), weight, by.id)
+            _note_heading(motion, way_told(m), weight, by.id)
             if way := compass_of(words.get("dir") or ""):
                 _note_sense(motion, m, way)
     for m in _CAME_WAY.finditer(text):
@@ -63,6 +63,11 @@ def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
             _note_origin(motion, text, m, weight, "headings.from_to")
     for m in _EXIT.finditer(text):
         _note_exit(motion, m["dir"], _EXIT.id)
+
+
+def way_told(m: re.Match[str]) -> str:
+    """The word for the way in a match of a rule with alternatives; "" for none."""
+    return next(filter(None, map(m.groupdict().get, _WAYS)), "")
 
 
 def _note_exit(motion: VehicleMotion, word: str, by: str) -> None:

@@ -9,6 +9,7 @@ import re
 from typing import NamedTuple
 
 from sgcad_core.reading.language import Rule, of_role, rule
+from sgcad_core.reading.motion.heading_lane_cues import way_told
 from sgcad_core.reading.motion.motion_record import ManeuverCue, VehicleMotion
 from sgcad_core.reading.text.compass import between, compass_of, turned
 
@@ -119,7 +120,7 @@ def _read_turn_to(segment: _Segment) -> None:
     for told in (rule("deeds.turn_to"), rule("deeds.meant_way")):
         for m in told.finditer(text):
             start = motion.headings[0].value if motion.headings else None
-            end = compass_of(m["onto"] or m.groupdict().get("onto2") or "")
+            end = compass_of(way_told(m))
             side = _BY_ANGLE.get(between(start, end)) if start and end else None
             if side and not _NOT.search(text[: m.start()]):
                 meant = told.id == "deeds.meant_way" or _LATER.search(text[: m.start()])

@@ -39,8 +39,9 @@ def read_motions(
         _read_part(found[identity.id], identity, roster)
     impact = min((t.number for t in statements if t.role == "impact"), default=len(statements))
     impact = struck_at if roster.counted and struck_at is not None else impact
+    own = () if roster.counted else reversed(statements)
     touched = {
-        v: t.number for t in reversed(statements) if t.role == "impact" for v in MENTION.findall(t.text)
+        v: t.number for t in own if t.role == "impact" for v in MENTION.findall(t.text)
     }  # each in the first sentence of its own contact: a third vehicle still waits behind that of the others
     texts = {t.number: t.text for t in statements}
     from_median = counts_from_median(texts.values(), roster)
@@ -51,7 +52,7 @@ def read_motions(
         for vehicle in segment.subjects:
             motion = found[vehicle]
             motion.at = segment.number
-            after = segment.number > (impact if roster.counted else max(impact, touched.get(vehicle, 0)))
+            after = segment.number > max(impact, touched.get(vehicle, 0))
             late = after and bool(motion.headings or motion.cues)
             if late and roster.counted:
                 continue
