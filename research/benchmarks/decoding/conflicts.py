@@ -4,7 +4,8 @@ The study's model answers road and crash once (no refinement); its crash is comp
 kinds and maneuvers of the actors, and the first contact. The gate's row says at how many tokens with a choice the row
 without the report was needed.
 
-    python -m research.benchmarks.decoding.conflicts [--study decoders_smollm2] [--arms grd cad ...] [--reports 12]
+    python -m research.benchmarks.decoding.conflicts [--arms grd cad ...] [--reports 12]
+    python -m research.benchmarks.decoding.conflicts --study decoders_smollm2 --must-answer
 """
 
 from __future__ import annotations
@@ -83,16 +84,16 @@ def reports(count: int) -> Iterator[tuple[str, BehaviorSpec]]:
         yield redact(" ".join(text.split())), BehaviorSpec.model_validate(one["scenario"][-1])
 
 
-def answered(backbone: Backbone, decoder: Decoder, narrative: str, tally: Tally) -> BehaviorSpec:
-    """The model's crash on its own road. Raises InvalidOutput, Refused."""
+def answered(backbone: Backbone, decoder: Decoder, narrative: str, tally: Tally, refusal: bool = True) -> BehaviorSpec:
+    """The model's crash on its own road; with `refusal` it may refuse. Raises InvalidOutput, Refused."""
     context = Context.of(CrashReport(case="c", narrative=narrative))
     road = backbone.generate(
-        context, Query(task=load_prompt("mini_road"), answer_schema=answer_schema(RoadLayout)), decoder
+        context, Query(task=load_prompt("mini_road"), answer_schema=answer_schema(RoadLayout, refusal=refusal)), decoder
     )
     tally.note(road)
     layout = parse_answer(road.text, RoadLayout)
     ids = road_ids(road_spec(layout))
-    schema = answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids})
+    schema = answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids}, refusal=refusal)
     task = load_prompt("mini_scenario", roads=layout.model_dump_json())
     crash = backbone.generate(context, Query(task=task, answer_schema=schema), decoder)
     tally.note(crash)
@@ -112,8 +113,8 @@ def compared(said: BehaviorSpec | None, told: BehaviorSpec) -> tuple[int, int]:
     return sum(a == b for a, b in pairs), len(pairs)
 
 
-def tallied(study: str, arm: str, count: int) -> tuple[Tally, Decoder]:
-    """One arm of a study over the reports."""
+def tallied(study: str, arm: str, count: int, refusal: bool) -> tuple[Tally, Decoder]:
+    """One arm of a study over the reports; with `refusal` its model may refuse."""
     config = configs.build(load_config(f"{study}/{arm}").raw, arm, arm)
     backbone, decoder = config.backbone, config.decoder
     if backbone is None or decoder is None:
@@ -124,7 +125,7 @@ def tallied(study: str, arm: str, count: int) -> tuple[Tally, Decoder]:
     for narrative, told in reports(count):
         started = time.process_time()
         try:
-            said = answered(backbone, decoder.at(1), narrative, tally)
+            said = answered(backbone, decoder.at(1), narrative, tally, refusal)
         except (InvalidOutput, Refused):
             said, tally.failed = None, tally.failed + 1
         tally.cpu_s += time.process_time() - started
@@ -139,13 +140,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--study", default="decoders", help="a study of configs/studies with these arms")
     parser.add_argument("--arms", nargs="*", default=ARMS)
     parser.add_argument("--reports", type=int, default=12)
+    parser.add_argument("--must-answer", action="store_true", help="the schema has no refusal: for untrained models")
     options = parser.parse_args(argv)
     print(  # noqa: T201 - a command prints
         "| decoder | fields right | tokens with a choice | conflicts | evidence | prior | neither | no answer | CPU s |"
     )
     print("|---|---|---|---|---|---|---|---|---|")  # noqa: T201 - a command prints
     for arm in options.arms:
-        tally, decoder = tallied(options.study, arm, options.reports)
+        tally, decoder = tallied(options.study, arm, options.reports, not options.must_answer)
         won, n = tally.conflicts, sum(tally.conflicts.values())
         cells = [arm, f"{tally.right} of {tally.asked}", tally.tokens, n, won["evidence"], won["prior"], won["neither"],
                  tally.failed, f"{tally.cpu_s:.0f}"]  # fmt: skip
