@@ -17,7 +17,7 @@ from sgcad_core.execution.plan_score import least_doubted
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask
-from sgcad_core.reading.behavior.behavior import behavior_of_facts
+from sgcad_core.reading.behavior.behavior import behavior_of_facts, with_acts_read
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.layout.layout_facts import lane_notes
 from sgcad_core.reading.reading import Reading
@@ -31,7 +31,7 @@ class Rules(PlannedWriter):
 
     asks_model: ClassVar[bool] = False
     mends: ClassVar[tuple[Severity, ...]] = ("repair",)
-    version: ClassVar[str] = "4"
+    version: ClassVar[str] = "5"
 
     try_others: bool = True
     """If the checks doubt the first plan: plan readings that differ in one weak fact, and keep the least doubted."""
@@ -68,7 +68,8 @@ class Rules(PlannedWriter):
 
     def _compiled(self, facts: CrashFacts, spec: RoadSpec, network: RoadNetwork, reading: Reading) -> Scenario:
         """The scenario of one reading of the crash."""
-        return self._of_behavior(behavior_of_facts(facts, spec), facts.driven, network, reading)
+        behavior = with_acts_read(behavior_of_facts(facts, spec), facts, reading.signals)
+        return self._of_behavior(behavior, facts.driven, network, reading)
 
     def _of_behavior(
         self, behavior: BehaviorSpec, courses: Courses, network: RoadNetwork, reading: Reading

@@ -17,7 +17,8 @@ from sgcad_core.errors import ConfigError, InvalidOutput
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Ask
-from sgcad_core.reading.behavior.behavior import as_read
+from sgcad_core.reading.behavior.behavior import as_read, with_acts_read
+from sgcad_core.reading.reading_with_acts import with_acts
 from sgcad_core.records.specs import BehaviorSpec, RoadSpec
 from sgcad_core.roads.describe import describe_network, road_ids
 
@@ -31,8 +32,9 @@ class SpecScenario(PlannedWriter):
     roads: Literal["described", "layout"] = "described"
     """Content of that slot: the network in words, or the layout's JSON as it was answered (for small models)."""
 
-    near_crashes: bool = False
-    """Ask for near crashes as well, which the embedded model has not learned; else they are as the rules read them."""
+    acts: bool = False
+    """Ask for near crashes as well, and for what vehicles did beside their maneuvers (stops, evasion, rest), which the
+    embedded model has not learned; else both are as the rules read them."""
 
     @property
     def prompts(self) -> tuple[str, ...]:
@@ -54,12 +56,14 @@ class SpecScenario(PlannedWriter):
         query = Query(
             task=load_prompt(self.prompt, roads=self._shown(network, roads)),
             passages=tuple(passages),
-            answer_schema=answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids}, places=self.near_crashes),
+            answer_schema=answer_schema(BehaviorSpec, enums={"road": ids, "exit_road": ids}, places=self.acts),
             attempt=attempt,
         )
         reading = context.reading
         behavior = parse_answer(ask(context, query).text, BehaviorSpec)
-        behavior = behavior if self.near_crashes else as_read(behavior, reading.crash)
+        if not self.acts:
+            behavior = with_acts_read(as_read(behavior, reading.crash), reading.crash, reading.signals)
+        reading = with_acts(reading, behavior)
         return compile_scenario(
             behavior, network, self.openscenario, self.encoding,
             may_skid=reading.lost_control, courses=reading.crash.driven, signals=reading.signals,

@@ -14,6 +14,7 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.metrics.lane_places import lane_steps
 from sgcad_core.metrics.untold_places import untold_places
+from sgcad_core.reading.reading_with_acts import with_acts
 
 
 class Places(Validator):
@@ -33,7 +34,7 @@ class Places(Validator):
             graph = parse_net(network.net_xml)
         except InvalidOutput:
             return []
-        reading = evidence.report.reading
+        reading = with_acts(evidence.report.reading, artifact.behavior)
         poses = {motion.actor: motion.pose for motion in artifact.planned}
         what, remedy = "it drives where the report does not have it", "choose a road, lane and maneuver that keep it"
         return [

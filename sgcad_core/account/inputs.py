@@ -17,6 +17,7 @@ from sgcad_core.geometry.plane import Size
 from sgcad_core.metrics.labels.motion_label_match import Path
 from sgcad_core.metrics.labels.observed_crash import Crash
 from sgcad_core.reading.reading import Reading
+from sgcad_core.reading.reading_with_acts import with_acts
 from sgcad_core.records.facts import Fact, Value
 from sgcad_core.roads.compiled_facts import CompiledRoad, compiled_roads, roads_as_told
 from sgcad_core.roads.lane_graph import LaneGraph
@@ -32,6 +33,11 @@ class ExecutedCase:
     execution: Execution
     pictured: bool = False
     """Whether a drawing may show lanes that the text does not count."""
+
+    @cached_property
+    def said(self) -> Reading:
+        """The reading with what the scenario's writer says of the vehicles' acts."""
+        return with_acts(self.reading, self.scenario.behavior)
 
     @cached_property
     def graph(self) -> LaneGraph:

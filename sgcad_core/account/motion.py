@@ -23,6 +23,7 @@ from sgcad_core.metrics.rest_error import attitude_of, near_m
 from sgcad_core.metrics.road_departure import hand_of, left_road, moves_made
 from sgcad_core.metrics.told_lanes import LANE_WORDS, TURN_LANES, ToldLane, told_lane
 from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
+from sgcad_core.records.acts import steering_of
 from sgcad_core.records.course import DepartureSide, Move
 from sgcad_core.records.facts import Fact, Value
 from sgcad_core.roads.lane_positions import position
@@ -99,12 +100,20 @@ def _evasion(*deeds: str) -> VehicleLabel:
     return VehicleLabel(evasion=deeds)
 
 
+def _deeds(evasion: str) -> tuple[str, ...]:
+    """The deeds of an evasive maneuver, as labels name them."""
+    side = steering_of(evasion)  # type: ignore[arg-type]
+    steers = () if side is None else ("steer",) if side == "either" else (f"steer_{side}",)
+    return (*(("brake",) if "braking" in evasion else ()), *steers)
+
+
 _LABELS: dict[str, Callable[[Value], VehicleLabel]] = {
     "maneuver": lambda value: VehicleLabel(maneuver=value),  # type: ignore[arg-type]
     "speed_mph": lambda value: VehicleLabel(speed_mph=float(value)),  # type: ignore[arg-type]
     "evasion.brakes": lambda _: _evasion("brake"),
     "evasion.steers": lambda value: _evasion("steer" if value == "either" else f"steer_{value}"),
     "evasion.none": lambda _: _evasion(),
+    "evasion": lambda value: _evasion(*_deeds(str(value))),
     "lost_control": lambda _: VehicleLabel(lost_control=True),
     "spin": lambda value: VehicleLabel(rest=RestLabel(turned="cw" if value == "clockwise" else "ccw")),
     "rest.facing_deg": lambda value: VehicleLabel(rest=RestLabel(facing=_point(float(value)))),  # type: ignore[arg-type]
@@ -270,7 +279,8 @@ def _exit(made: ExecutedCase, who: str) -> str | None:
 _JUDGES: dict[str, Judge] = {
     "heading": _heading, "lane": _lane, "lane_word": _lane, "to_lane": _to_lane,
     "spin_deg": _spin_deg, "rest.side": _side,
-    "rest.attitude": _attitude, "from_stop": _from_rest, "rolls": _rolls, "roll_quarters": _roll_quarters,
+    "rest.attitude": _attitude, "from_stop": _from_rest, "from_rest": _from_rest,
+    "rolls": _rolls, "roll_quarters": _roll_quarters,
     "rolls_to": _rolls_to, "departs": _departs, "origin": _joins(_start), "target": _joins(_exit),
     "rest.distance_m": _distance, "rest.lane": _rest_lane, "rest.lane_way": _rest_lane,
 }  # fmt: skip

@@ -18,9 +18,15 @@ from sgcad_core.account.words import phrase
 from sgcad_core.case.records import Finding, Stage
 from sgcad_core.execution.contact import realised
 from sgcad_core.reading.provenance.crash_provenance import CONFIDENCE
+from sgcad_core.records.acts import ACT_FIELDS, act_of
 from sgcad_core.records.facts import Fact, Value
 
 Writer = Literal["model", "rules"]
+_SHOWN = (
+    "maneuver", "lane", "speed_mph", "from_stop", "lost_control", "spin", "spin_deg", "rolls", "departs",
+    "rest.where", "rest.facing_deg", "rest.attitude", "rest.distance_m",
+)  # fmt: skip
+"""Fields whose value as a model answered it is held against the execution."""
 _ANSWERED: dict[Stage, re.Pattern[str]] = {
     "road": re.compile(r"(roads|junction|approaches)\..*"),
     "scenario": re.compile(
@@ -29,6 +35,10 @@ _ANSWERED: dict[Stage, re.Pattern[str]] = {
     ),
 }
 """Fields of which a model's answer always says something, or leaves it open (`_own`)."""
+_ACTS = {
+    "from_stop": "from_rest", "evasion.brakes": "evasion", "evasion.steers": "evasion", "evasion.none": "evasion",
+} | {name: name for name in ACT_FIELDS}  # fmt: skip
+"""Facts of a vehicle's acts -> the field of the answer that says them, where it says something of acts at all."""
 
 
 def disagreements_of(
@@ -57,7 +67,7 @@ def weighed(
         stage = _stage(item.field)
         if item.kind == "has" or stage not in models or _by_person(made, item.field):
             items.append(item)
-        elif item.field in fields or (_ANSWERED[stage].fullmatch(item.field) and _own(made, item) is not None):
+        elif item.field in fields or (_answered(stage, item) and _own(made, item) is not None):
             items += _as_answered(made, item)
             found += [_against(made, item)] if item.field not in fields else []
         else:
@@ -81,11 +91,24 @@ def _by_person(made: ExecutedCase, field: str) -> bool:
     return fact is not None and fact.basis == "person"
 
 
+def _answered(stage: Stage, item: Item) -> bool:
+    """Whether the answer of a stage has a field for what the item tells."""
+    return _ANSWERED[stage].fullmatch(item.field) is not None or (stage == "scenario" and _act(item) is not None)
+
+
+def _act(item: Item) -> str | None:
+    """The field of a vehicle's acts that says what the item tells; None where it tells no act."""
+    return _ACTS.get(item.field.split(".", 2)[2]) if item.field.count(".") > 1 else None
+
+
 def _own(made: ExecutedCase, item: Item) -> Value:
     """The model's own value; None where it left the field open."""
     name = item.field.rpartition(".")[2]
     behavior = made.scenario.behavior
     actor = next((a for a in behavior.actors if a.id == item.subject), None) if behavior else None
+    if (act := _act(item)) is not None and item.field.startswith("vehicles."):
+        value: Value = act_of(actor.acts if actor else None, act)
+        return value
     if name in ("lane", "lane_word", "speed_mph"):
         return getattr(actor, name.removesuffix("_word"), None)
     if name in ("maneuver", "kind"):
@@ -95,11 +118,11 @@ def _own(made: ExecutedCase, item: Item) -> Value:
 
 def _as_answered(made: ExecutedCase, item: Item) -> Iterator[Item]:
     """What the model says of the field: shown by the execution, or lacking."""
-    own, name = _own(made, item), item.field.rpartition(".")[2]
+    own, name = _own(made, item), item.field.split(".", 2)[-1]
     if item.field.startswith("contacts."):
         has = realised(made.scenario.declared, made.execution.contact)
         yield item.model_copy(update={"kind": "has", "value": own, "seen": None, "reason": ""} if has else {})
-    elif name in ("maneuver", "lane", "speed_mph") and own is not None and item.subject in made.tracks:
+    elif name in _SHOWN and own is not None and item.subject in made.tracks:
         fact = Fact(field=item.field, value=own, basis="model", status="stated", rule="answer", confidence=0.5)
         if seen := judged(made, item.subject, name, fact):
             yield made.item(seen.has, item.field, own, seen.instead, why=seen.why)

@@ -64,7 +64,7 @@ def _first(items: Sequence[Item]) -> str:
 # ------------------------------------------------------------------ what else costs the verdict
 def odd_driving(made: ExecutedCase, notes: Sequence[Note]) -> Iterator[Item]:
     """A lack where the contact comes about only in driving that is not told."""
-    if made.reading.lost_control:
+    if made.said.lost_control:
         return
     for note in notes:
         if note.kind == "finding" and note.text.startswith(_ODD):
@@ -79,7 +79,7 @@ def untold_swerves(made: ExecutedCase, notes: Sequence[Note]) -> Iterator[Item]:
     """A lack for each vehicle that swerves or skids into the contact where nothing of the kind is told of it."""
     for note in notes:
         words = next((words for words in UNTOLD if note.text == f"{note.subject} {words}"), None)
-        told = made.reading.crash.driven.get(note.subject, CourseTold())
+        told = made.said.crash.driven.get(note.subject, CourseTold())
         vehicle = made.reading.crash.vehicle(note.subject)
         aside = vehicle is not None and vehicle.maneuver not in _STRAIGHT_ON
         leaves = aside or told.steers or told.lost_control or told.departs or told.moves
@@ -92,7 +92,7 @@ def untold_swerves(made: ExecutedCase, notes: Sequence[Note]) -> Iterator[Item]:
 
 def places(made: ExecutedCase) -> Iterator[Item]:
     """A lack for each vehicle that drives out of the lanes of its direction before its contact, and is not told to."""
-    told = made.reading.crash, made.reading.lost_control
+    told = made.said.crash, made.said.lost_control
     for one in untold_places(made.graph, [*made.tracks.values()], made.scenario.actors, *told):
         yield Item(
             kind="lacks", field=f"vehicles.{one.actor}.place", subject=one.actor, value=None, seen=one.place,

@@ -17,6 +17,7 @@ from sgcad_core.geometry.distances import distance_to
 from sgcad_core.reading.provenance.crash_provenance import CONFIDENCE, default
 from sgcad_core.reading.provenance.road_provenance import road_of_bearing
 from sgcad_core.reading.reading import Reading
+from sgcad_core.records.acts import ACT_FIELDS, act_of
 from sgcad_core.records.facts import Basis, Fact, Status, Value
 from sgcad_core.records.specs import Actor, Road
 from sgcad_core.roads.lane_graph import LaneGraph, road_of
@@ -115,6 +116,9 @@ def _actor(actor: Actor, track: Trajectory | None, graph: LaneGraph, grounds: Gr
     if grounds.answer is not None:
         for name in ("kind", "maneuver"):
             yield grounds.fact(f"{at}.{name}", getattr(actor, name), f"{path}.{name}", (f"{at}.{name}",), "")
+        for name in ACT_FIELDS:
+            if (value := act_of(actor.acts, name)) is not None:
+                yield grounds.fact(f"{at}.{name}", value, f"{path}.acts.{name}", (f"{at}.{name}",), "")
 
 
 def _speed(actor: Actor, planned_mph: float, grounds: Grounds, at: str, path: str) -> Fact:

@@ -46,7 +46,7 @@ from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Segment, Statement, resolve_sentences, segments
 from sgcad_core.reading.motion.motion_reader import read_motions
 from sgcad_core.reading.motion.motion_record import ManeuverCue, VehicleMotion
-from sgcad_core.reading.motion.signal_states import SignalState, SignalTold, signal_states
+from sgcad_core.reading.motion.signal_states import SignalTold, signal_states
 from sgcad_core.reading.provenance.crash_provenance import (
     FactBuilder,
     StageResults,
@@ -63,6 +63,7 @@ from sgcad_core.reading.text.traced_text import TracedText
 from sgcad_core.records.edits import Edit
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.timeline import Act
+from sgcad_core.records.words import SignalState
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from pydantic import ValidationError
+
 from sgcad_core.kinds import kind_of_letter
 from sgcad_core.reading.actors.people_objects import OtherFacts
 from sgcad_core.reading.contacts.contact_records import AREAS, ContactFacts
@@ -19,6 +21,7 @@ from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.motion.absolute_headings import turned_vehicle
 from sgcad_core.reading.roads.road_facts import RoadFacts
 from sgcad_core.reading.text.compass import between
+from sgcad_core.records.acts import ACT_FIELDS, courses_with, with_said
 from sgcad_core.records.edits import Edit, by_person, canonical, effective, of_contacts, values
 from sgcad_core.records.facts import Fact, Value
 from sgcad_core.records.specs import Area
@@ -28,7 +31,10 @@ if TYPE_CHECKING:
 
 _OF_READING = ("vehicles.", "others.", "contacts.", "conditions.", "junction.", "near_crash")
 """Beginnings of the fields that a reading holds too."""
-_SETTLED = {"start_lane": ("lane", "lane_word"), "maneuver": ("meant_maneuver",)}
+_SETTLED = {
+    "start_lane": ("lane", "lane_word"), "maneuver": ("meant_maneuver",), "from_rest": ("from_stop",),
+    "evasion": ("evasion.brakes", "evasion.steers", "evasion.none"),
+}  # fmt: skip
 """Field of an actor -> facts of the text that say no more once a person gave it."""
 _SKY = ("light", "weather", "surface")
 Given = Mapping[str, Value]
@@ -41,7 +47,13 @@ def with_edits(reading: Reading, edits: Sequence[Edit]) -> Reading:
     given = values(edits)
     crash = _crash(reading.crash, given)
     roads = replace(_roads(reading.roads, given), crash=crash)
-    return replace(reading, crash=crash, roads=roads, facts=_facts(reading.facts, edits), edits=tuple(edits))
+    acts = {v.id: _of_actor(given, v.id) for v in crash.vehicles}
+    signals: Any = {who: fields["signal"] for who, fields in acts.items() if fields.get("signal")}
+    return replace(
+        reading, crash=crash, roads=roads, signals={**reading.signals, **signals},
+        lost_control=reading.lost_control or any(fields.get("lost_control") is True for fields in acts.values()),
+        facts=_facts(reading.facts, edits), edits=tuple(edits),
+    )  # fmt: skip
 
 
 def holds(crash: CrashFacts, edits: Sequence[Edit]) -> bool:
@@ -108,6 +120,7 @@ def _with_vehicle(crash: CrashFacts, name: str, fields: Mapping[str, Value]) -> 
     known = crash.vehicle(name)
     if known is None or not fields:
         return crash
+    crash = _acting(crash, known, {field: fields[field] for field in ACT_FIELDS if field in fields})
     changed = replace(known, **_update(known, fields))
     vehicles = tuple(changed if v.id == name else v for v in crash.vehicles)
     heading: Any = fields.get("heading")
@@ -119,6 +132,17 @@ def _with_vehicle(crash: CrashFacts, name: str, fields: Mapping[str, Value]) -> 
     return replace(crash, vehicles=vehicles, oriented=True)
 
 
+def _acting(crash: CrashFacts, known: VehicleFacts, said: Given) -> CrashFacts:
+    """What a person says of a vehicle's acts; a null leaves open what was read."""
+    if not said:
+        return crash
+    try:
+        acts = with_said(None, said)
+    except ValidationError:
+        return crash
+    return replace(crash, courses=courses_with(crash.courses, {known.id: acts}))
+
+
 def _update(known: VehicleFacts, fields: Mapping[str, Value]) -> dict[str, Any]:
     update: dict[str, Any] = {k: fields[k] for k in ("kind", "speed_mph") if k in fields}
     if "heading" in fields:
@@ -127,6 +151,8 @@ def _update(known: VehicleFacts, fields: Mapping[str, Value]) -> dict[str, Any]:
         update |= {"maneuver": fields["maneuver"], "meant": None, "from_stop": False, "exit_heading": None}
     if "maneuver" in fields:
         update |= {"maneuver_stated": True}
+    if fields.get("from_rest") is not None:
+        update |= {"from_stop": fields["from_rest"]}
     if "start_lane" in fields:
         update |= {"lane": fields["start_lane"], "lane_word": None}
     return update

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
-from sgcad_core.records.specs import Area, Compass
+from sgcad_core.records.words import Area, Compass
 
 Where = Literal["road", "intersection", "shoulder", "median", "off_road"]
 Attitude = Literal["wheels", "roof", "left", "right"]

@@ -24,7 +24,7 @@ _NAMES = {
     "speed": "speed_mph", "start_speed_mph": "speed_mph", "limit": "speed_limit_mph",
 }  # fmt: skip
 """Shorter names, and those of written facts, of what an actor or a road has."""
-_ACTORS = re.compile(r"(?:(?:actors|vehicles|others)\.)?([A-Za-z]\d+)(?:\.(\w+))?")
+_ACTORS = re.compile(r"(?:(?:actors|vehicles|others)\.)?([A-Za-z]\d+)(?:\.([\w.]+))?")
 
 
 class Edit(Record):

@@ -17,15 +17,19 @@ from sgcad_core.kinds import DRIVEWAY, ActorRecord, actor_kind
 from sgcad_core.kinds import Maneuver as Maneuver
 from sgcad_core.kinds import RoadKind as RoadKind
 from sgcad_core.records.actor_kind import ActorKind as ActorKind
+from sgcad_core.records.acts import Acts
 from sgcad_core.records.answer_schema import TRAINED, added
 from sgcad_core.records.answer_schema import Spec as Spec
+from sgcad_core.records.words import Area as Area
+from sgcad_core.records.words import Compass as Compass
+from sgcad_core.records.words import EvasiveManeuver as EvasiveManeuver
+from sgcad_core.records.words import LaneNumber
 
 Id = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,23}$")]
 _TRAINED_ID = {"pattern": "^[VPBTO][0-9]{1,2}$"}
 ActorId = Annotated[
     str, StringConstraints(pattern=r"^[VPBTOA][0-9]{1,2}$"), Field(json_schema_extra={TRAINED: _TRAINED_ID})
 ]
-Compass = Literal["N", "NE", "E", "SE", "S", "SW", "W", "NW"]
 NodeControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yield"]
 Turn = Literal["left", "through", "right", "left_through", "through_right", "left_right", "any"]
 Median = Literal["none", "painted", "raised", "grass", "barrier"]
@@ -33,18 +37,12 @@ RoadArea = Literal["", "rural", "town", "motorway"]
 CenterLine = Literal["", "double_yellow", "solid_yellow", "broken_yellow"]
 Beside = Literal["bike_lane", "parking", "shoulder", "sidewalk"]
 """What lies beside the lanes of a road, in this order from the lanes outwards."""
-Area = Literal["front", "back", "left", "right"]
-EvasiveManeuver = Literal[
-    "none", "braking", "steering", "steering_left", "steering_right", "braking_and_steering",
-    "braking_and_steering_left", "braking_and_steering_right", "accelerating",
-]  # fmt: skip
 Light = Literal["day", "dusk", "dawn", "dark", "dark_lit"]
 Weather = Literal["clear", "cloudy", "rain", "snow", "sleet", "fog"]
 Surface = Literal["dry", "wet", "snow", "ice"]
 SpeedMph = Annotated[int, Field(ge=0, le=120)]
 SpeedLimitMph = Annotated[int, Field(ge=5, le=85)]
 Lanes = Annotated[int, Field(ge=0, le=8)]
-LaneNumber = Annotated[int, Field(ge=1, le=8)]
 CLEARANCE_M = 0.6
 """How near two bodies come in a near crash whose report does not tell it, metres: "nearly hit" is less than a door's
 width. A convention of ours, marked `default` wherever it stands."""
@@ -195,6 +193,7 @@ class Actor(Spec):
     gore: bool = added(False, "in the gore of a ramp: what stands there, or who crosses it into exit_road")
     firm: bool = added(False, "a thing that stays where it stands: what drives on has glanced off it")
     loose: bool = added(False, "a piece that lies in the way: what strikes it drives on over it")
+    acts: Acts | None = added(None, "what it did beside its maneuver, of a vehicle; null where nothing of it is told")
 
     @property
     def record(self) -> ActorRecord:
@@ -242,6 +241,11 @@ class BehaviorSpec(Spec):
     weather: Weather | None = None
     surface: Surface | None = None
     near_crash: NearCrash | None = added(None, "what was avoided where nobody touches; contacts is then empty")
+
+    @property
+    def acts(self) -> dict[str, Acts]:
+        """What is said of actors beside their maneuvers, by id."""
+        return {actor.id: actor.acts for actor in self.actors if actor.acts is not None}
 
 
 class Refusal(Spec):

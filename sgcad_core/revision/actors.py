@@ -16,6 +16,7 @@ from pydantic import BaseModel, ValidationError
 from sgcad_core.kinds import ACTORS, kind_of_letter
 from sgcad_core.reading.layout.road_ways import Way, apart, degree, exits, turn_of, ways_of
 from sgcad_core.reading.text.compass import angle_of
+from sgcad_core.records.acts import ACT_FIELDS, with_said
 from sgcad_core.records.edits import of_contacts
 from sgcad_core.records.facts import Value
 from sgcad_core.records.specs import Actor, BehaviorSpec, Compass, Contact, Maneuver, NearCrash, RoadSpec
@@ -101,6 +102,7 @@ def _moved(actor: Actor, spec: RoadSpec, fields: Mapping[str, Value]) -> Actor:
     plain = {ACTOR_FIELDS[name]: fields[name] for name in ("kind", "maneuver", "speed_mph", "length_m", "width_m")
              if name in fields}  # fmt: skip
     changed = _checked(Actor, actor.model_dump() | plain) or actor
+    changed = _acting(changed, {name: fields[name] for name in ACT_FIELDS if name in fields})
     if changed.kind != actor.kind:  # the former kind's length is not this one's
         sizes = {name: None for name in ("length_m", "width_m") if name not in fields}
         changed = changed.model_copy(update=sizes)
@@ -113,6 +115,14 @@ def _moved(actor: Actor, spec: RoadSpec, fields: Mapping[str, Value]) -> Actor:
         return placed.model_copy(update={"exit_road": leaves}) if known else placed
     same_way = (placed.road, placed.direction, placed.maneuver) == (actor.road, actor.direction, actor.maneuver)
     return placed if same_way else placed.model_copy(update={"exit_road": _exit(placed, spec)})
+
+
+def _acting(actor: Actor, said: dict[str, Value]) -> Actor:
+    """The actor with what is said of its acts, where these are possible together."""
+    try:
+        return actor.model_copy(update={"acts": with_said(actor.acts, said)})
+    except ValidationError:
+        return actor
 
 
 def _placed(actor: Actor, spec: RoadSpec, fields: Mapping[str, Value]) -> Actor:

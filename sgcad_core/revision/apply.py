@@ -18,6 +18,7 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.reading.reading import Reading
+from sgcad_core.reading.reading_with_acts import with_acts
 from sgcad_core.reading.roads.told_roads import told_roads
 from sgcad_core.records.edits import Edit, values
 from sgcad_core.records.specs import RoadSpec
@@ -66,10 +67,10 @@ def apply_scenario_edits(
     if not behavior.contacts and not behavior.near_crash and (scenario.behavior.contacts or scenario.near_crash):
         what = "nobody touches anybody any more"
         raise InvalidOutput(what, [_finding(what, "contacts", "", "set contacts.0.striker and contacts.0.struck")])
-    crash = reading.crash
+    told = with_acts(reading, behavior)
     made = compile_scenario(
         behavior, network, version, encoding,
-        may_skid=reading.lost_control, courses=crash.driven, signals=reading.signals,
+        may_skid=told.lost_control, courses=told.crash.driven, signals=told.signals,
     )  # fmt: skip
     return made.model_copy(update={"notes": (*_kept_notes(scenario, made), *made.notes)})
 

@@ -19,6 +19,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from sgcad_core.case.records import Stage
 from sgcad_core.errors import WrongEdit
 from sgcad_core.kinds import JunctionKind
+from sgcad_core.records.acts import ACT_FIELDS, REST, Acts, Rest
 from sgcad_core.records.edits import AS_READ, canonical
 from sgcad_core.records.facts import Value
 from sgcad_core.records.specs import Actor, BehaviorSpec, Compass, Contact, NearCrash, Node, Road, RoadSpec
@@ -138,6 +139,17 @@ def _annotation(model: type[BaseModel], name: str) -> Any:
     return Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation
 
 
+_ACTS_MEAN = {
+    "from_rest": "whether it stood, then moved on into its first contact", "signal": "what the signal showed to it",
+    "evasion": "what it did to avoid its first contact", "lost_control": "whether it lost control",
+    "departs": "side by which it left the road before its first contact", "spin": "how it turned after the contact",
+    "spin_deg": "by how many degrees it turned", "rolls": "whether it rolled over",
+    "roll_quarters": "quarter turns of the rollover", "rolls_to": "the side that led as it rolled over",
+    "rest.where": "where it came to rest", "rest.side": "side of the road on which it came to rest",
+    "rest.facing_deg": "where it faced at rest, clockwise from north", "rest.attitude": "the part it rests on",
+    "rest.distance_m": "how far from its first contact it came to rest",
+    "rest.lane": "the lane in which it came to rest, 1 at the right curb",
+}  # fmt: skip
 _AT_ROAD = (r"roads? (.*, )?{}(,.*| and .*)?", r"leg {}", r"roads\[.*\].*", r"legs(\[.*\].*)?")
 _AT_ACTOR = (r"(actor )?{}", r"{}\.\w+", r".*\b{}\b.*")
 
@@ -174,6 +186,10 @@ def _actors() -> Iterator[Editable]:
         yield Editable(f"{group}.*.present", "scenario", "whether it takes part", bool,
                        concerns=(*_AT_ACTOR, "actors.*"))  # fmt: skip
         yield Editable(f"{group}.*.heading", "scenario", "its heading before the crash", Compass, concerns=_AT_ACTOR)
+        for name in ACT_FIELDS if group == "vehicles" else ():
+            owner, last = (Rest, name.removeprefix(f"{REST}.")) if name.startswith(f"{REST}.") else (Acts, name)
+            yield Editable(f"{group}.*.{name}", "scenario", _ACTS_MEAN[name], _annotation(owner, last),
+                           concerns=_AT_ACTOR)  # fmt: skip
         for name, field in ACTOR_FIELDS.items():
             refers: Literal["", "road"] = "road" if name in ("start_road", "exit_road") else ""
             yield Editable(f"{group}.*.{name}", "scenario", meaning[name], _annotation(Actor, field), refers,

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, PARKING_LOT, RAMP, ROUNDABOUT, JunctionKind, T
 from sgcad_core.reading.layout.road_ways import Way, degree, ways_of
 from sgcad_core.reading.text.compass import compass_of_angle, turned
+from sgcad_core.records.acts import ACT_FIELDS, act_of
 from sgcad_core.records.facts import Value
 from sgcad_core.records.specs import Actor, BehaviorSpec, Compass, Contact, Node, Road, RoadSpec, centers, is_aisle
 
@@ -59,7 +60,7 @@ def _of_actor(rest: str, spec: RoadSpec | None, behavior: BehaviorSpec) -> Value
     if attribute == "heading":
         way = way_of(actor, spec) if spec else None
         return compass_of_angle(way.heading_rad) if way else None
-    value: Value = getattr(actor, ACTOR_FIELDS[attribute])
+    value: Value = act_of(actor.acts, attribute) if attribute in ACT_FIELDS else getattr(actor, ACTOR_FIELDS[attribute])
     return value
 
 

@@ -7,14 +7,13 @@ tell nothing. Knows no map.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES
-
-SignalState = Literal["green", "yellow", "red"]
+from sgcad_core.records.words import SignalState
 
 
 class SignalTold(NamedTuple):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 
 import pytest
 
@@ -71,11 +72,31 @@ NEAR = {
 
 def test_a_model_that_knows_near_crashes_is_asked_for_them():
     model = Model({**GOOD, "contacts": [], "near_crash": NEAR})
-    scenario = write(model, near_crashes=True)
+    scenario = write(model, acts=True)
     asked = model.asked[0][1].answer_schema["anyOf"][0]
     assert set(asked["required"]) == set(CROSSING.model_fields)
     assert "braking_and_steering_left" in json.dumps(asked["properties"]["near_crash"])
     assert (scenario.declared, scenario.near_crash.closest_m) == (None, 1.0)
+
+
+def test_a_model_says_how_a_vehicle_comes_to_rest():
+    first, *others = GOOD["actors"]
+    facing = {}
+    for deg in (0, 180):
+        said = {"from_rest": None, "rest": {"where": None, "facing_deg": deg}}
+        model = Model({**GOOD, "actors": [{**first, "acts": said}, *others]})
+        scenario = write(model, acts=True)
+        facing[deg] = math.degrees(float(scenario.planned[0].heading_rad[-1]))
+    assert "facing_deg" in json.dumps(model.asked[0][1].answer_schema)
+    assert abs((facing[0] - facing[180] + 180) % 360 - 180) > 90, facing
+
+
+def test_of_a_model_that_does_not_know_acts_they_are_as_the_text_tells():
+    told = Context(narrative="V1 turned left in front of V2. V2 struck V1. V1 came to rest facing south.")
+    model = Model(GOOD)
+    scenario = SpecScenario().write(told, PASSAGES, (), model, 1, crossroads())
+    assert {name: acts.rest.facing_deg for name, acts in scenario.behavior.acts.items()} == {"V1": 180.0}
+    assert "facing_deg" not in json.dumps(model.asked[0][1].answer_schema)
 
 
 def test_of_a_model_that_does_not_know_near_crashes_the_first_contact_is_the_one_that_was_avoided():

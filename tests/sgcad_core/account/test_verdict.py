@@ -32,7 +32,7 @@ def item(kind: str, field: str = "vehicles.V1.heading") -> Item:
 def made(text: str):
     """A case of which only the reading matters."""
     reading = read(text)
-    return SimpleNamespace(reading=reading, told={fact.field: fact for fact in reading.facts})
+    return SimpleNamespace(reading=reading, said=reading, told={fact.field: fact for fact in reading.facts})
 
 
 DIFFER = Disagreement(

@@ -138,6 +138,21 @@ def test_a_reading_goes_by_a_person():
     assert not holds(read(TEXT).crash, given)
 
 
+def test_a_person_says_how_a_vehicle_stopped_evaded_and_came_to_rest():
+    said = edits(vehicles__V1__from_rest=True, V1__evasion="braking", V1__rest__where="shoulder",
+                 V1__rest__side="left", V1__signal="red")  # fmt: skip
+    made = with_edits(read(f"{TEXT} V1 steered right. V1 came to rest facing north."), said)
+    course = made.crash.driven["V1"]
+    assert (course.from_rest, course.brakes, course.steers) == (True, True, None)
+    assert (course.rest.where, course.rest.side, course.rest.facing_deg) == ("shoulder", "left", 0.0)
+    assert made.signals == {"V1": "red"}
+    laid = behavior_with_edits(BEHAVIOR, SPEC, {e.field: e.value for e in said})
+    assert value_of("vehicles.V1.rest.side", SPEC, laid) == "left"
+    assert unapplied_edits(said, "scenario", SPEC, laid) == []
+    facts = {f.field: f.value for f in made.facts if f.field.startswith("vehicles.V1.evasion")}
+    assert facts == {"vehicles.V1.evasion": "braking"}
+
+
 def test_a_reading_that_nobody_changed_is_the_same_one():
     reading = read(TEXT)
     assert with_edits(reading, ()) is reading
