@@ -186,14 +186,14 @@ def _actors() -> Iterator[Editable]:
         yield Editable(f"{group}.*.present", "scenario", "whether it takes part", bool,
                        concerns=(*_AT_ACTOR, "actors.*"))  # fmt: skip
         yield Editable(f"{group}.*.heading", "scenario", "its heading before the crash", Compass, concerns=_AT_ACTOR)
-        for name in ACT_FIELDS if group == "vehicles" else ():
-            owner, last = (Rest, name.removeprefix(f"{REST}.")) if name.startswith(f"{REST}.") else (Acts, name)
-            yield Editable(f"{group}.*.{name}", "scenario", _ACTS_MEAN[name], _annotation(owner, last),
-                           concerns=_AT_ACTOR)  # fmt: skip
         for name, field in ACTOR_FIELDS.items():
             refers: Literal["", "road"] = "road" if name in ("start_road", "exit_road") else ""
             yield Editable(f"{group}.*.{name}", "scenario", meaning[name], _annotation(Actor, field), refers,
                            _AT_ACTOR)  # fmt: skip
+        for name in ACT_FIELDS if group == "vehicles" else ():
+            owner, last = (Rest, name.removeprefix(f"{REST}.")) if name.startswith(f"{REST}.") else (Acts, name)
+            yield Editable(f"{group}.*.{name}", "scenario", _ACTS_MEAN[name], _annotation(owner, last),
+                           concerns=_AT_ACTOR)  # fmt: skip
 
 
 def _crash() -> Iterator[Editable]:
