@@ -25,6 +25,7 @@ from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.case.verdict_told import verdict_sentence
 from sgcad_core.errors import MissingTool
 from sgcad_core.geometry.plane import Box, corners
+from sgcad_core.system import temp_folders
 from sgcad_core.system.pictures import opened
 from sgcad_core.units import MPS_PER_MPH
 
@@ -50,16 +51,20 @@ _SPEEDS_TOP, _SPEEDS = 50 + 19 * _REPORT_LINES + 14, 5
 
 
 def film(folder: Path, out: Path, kinds: Sequence[str], fps: int) -> list[Path]:
-    """Write a case's films into a folder; their paths. Raises BadInput, MissingTool."""
+    """Write a case's films into a folder, each whole or not at all; their paths. Raises BadInput, MissingTool."""
     scene = Shots(FinishedCase(folder))
     if "mp4" in kinds:
         _ffmpeg()
     out.mkdir(parents=True, exist_ok=True)
     written = []
-    if "mp4" in kinds:
-        written.append(_mp4(scene, out / "crash.mp4", fps))
-    if "gif" in kinds:
-        written.append(_gif(scene, out / "crash.gif"))
+    with temp_folders.folder_beside(out / "crash") as partial:  # a film takes a while, and a cut one plays too
+        for kind in (kind for kind in KINDS if kind in kinds):
+            file = partial / f"crash.{kind}"
+            if kind == "mp4":
+                _mp4(scene, file, fps)
+            else:
+                _gif(scene, file)
+            written.append(file.replace(out / file.name))
     return written
 
 
@@ -73,7 +78,7 @@ def _ffmpeg() -> Any:
     return imageio_ffmpeg
 
 
-def _mp4(scene: Shots, file: Path, fps: int) -> Path:
+def _mp4(scene: Shots, file: Path, fps: int) -> None:
     writer = _ffmpeg().write_frames(str(file), (SIDE + PANEL, SIDE), fps=fps, macro_block_size=2)
     writer.send(None)
     try:
@@ -81,14 +86,12 @@ def _mp4(scene: Shots, file: Path, fps: int) -> Path:
             writer.send(picture.tobytes())
     finally:
         writer.close()
-    return file
 
 
-def _gif(scene: Shots, file: Path) -> Path:
+def _gif(scene: Shots, file: Path) -> None:
     size = round((SIDE + PANEL) * GIF_SCALE), round(SIDE * GIF_SCALE)
     shots = [picture.resize(size).quantize(128) for picture in scene.frames(GIF_FPS)]
     shots[0].save(file, save_all=True, append_images=shots[1:], duration=round(1000 / GIF_FPS), loop=0, optimize=True)
-    return file
 
 
 @dataclass(frozen=True)

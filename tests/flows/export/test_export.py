@@ -5,6 +5,7 @@ import json
 import pickle
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -181,6 +182,35 @@ def test_wrong_wishes_are_named_with_what_there_is(made, arguments, said):
     ended = run("export", made, *arguments)
     assert isinstance(ended.exception, ConfigError)
     assert said in str(ended.exception)
+
+
+def encoder(file, size, **_):
+    """In the place of ffmpeg: each picture is written at once."""
+    with open(file, "wb") as out:
+        while True:
+            out.write((yield) or b"")
+            out.flush()
+
+
+@pytest.mark.parametrize("kind", ["mp4", "gif"])
+def test_film_that_is_cut_short_leaves_the_old_one_as_it_was(made, tmp_path, monkeypatch, kind):
+    (old := tmp_path / f"crash.{kind}").write_bytes(b"old")
+    whole = Shots.frames
+
+    def cut(self, fps):
+        yield from itertools.islice(whole(self, fps), 3)
+        assert old.read_bytes() == b"old"  # so a kill at this time would leave it too
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", SimpleNamespace(write_frames=encoder))
+    monkeypatch.setattr(Shots, "frames", cut)
+    with pytest.raises(KeyboardInterrupt):
+        film(made, tmp_path, [kind], 10)
+    assert old.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [old]
+    monkeypatch.setattr(Shots, "frames", lambda self, fps: itertools.islice(whole(self, fps), 3))
+    assert film(made, tmp_path, [kind], 10) == [old]
+    assert len(old.read_bytes()) > 1000
 
 
 def test_film_without_ffmpeg_says_what_to_install(made, tmp_path, monkeypatch):
