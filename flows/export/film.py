@@ -50,13 +50,12 @@ _SPEEDS_TOP, _SPEEDS = 50 + 19 * _REPORT_LINES + 14, 5
 """Pixels from the top to the speeds, and of how many actors they are told."""
 
 
-def film(folder: Path, out: Path, kinds: Sequence[str], fps: int) -> list[Path]:
-    """Write a case's films into a folder, each whole or not at all; their paths. Raises BadInput, MissingTool."""
+def film(folder: Path, out: Path, kinds: Sequence[str], fps: int) -> Iterator[Path]:
+    """Write a case's films into a folder, each whole or not at all; paths as they come. Raises BadInput, MissingTool."""
     scene = Shots(FinishedCase(folder))
     if "mp4" in kinds:
-        _ffmpeg()
+        check_ffmpeg()
     out.mkdir(parents=True, exist_ok=True)
-    written = []
     with temp_folders.folder_beside(out / "crash") as partial:  # a film takes a while, and a cut one plays too
         for kind in (kind for kind in KINDS if kind in kinds):
             file = partial / f"crash.{kind}"
@@ -64,11 +63,11 @@ def film(folder: Path, out: Path, kinds: Sequence[str], fps: int) -> list[Path]:
                 _mp4(scene, file, fps)
             else:
                 _gif(scene, file)
-            written.append(file.replace(out / file.name))
-    return written
+            yield file.replace(out / file.name)
 
 
-def _ffmpeg() -> Any:
+def check_ffmpeg() -> Any:
+    """The module that brings ffmpeg. Raises MissingTool."""
     try:
         import imageio_ffmpeg
     except ImportError as fault:
@@ -79,7 +78,7 @@ def _ffmpeg() -> Any:
 
 
 def _mp4(scene: Shots, file: Path, fps: int) -> None:
-    writer = _ffmpeg().write_frames(str(file), (SIDE + PANEL, SIDE), fps=fps, macro_block_size=2)
+    writer = check_ffmpeg().write_frames(str(file), (SIDE + PANEL, SIDE), fps=fps, macro_block_size=2)
     writer.send(None)
     try:
         for picture in scene.frames(fps):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from sgcad_core.kinds import JUNCTIONS
+
 _NAMES = {
     "kind": "is a", "start_speed_mph": "speed before", "final_speed_mph": "last speed", "start_road": "starts on",
     "start_lane": "starts in lane", "exit_road": "leaves by", "lane_word": "lane as told", "striker": "striker",
@@ -15,6 +17,7 @@ _NAMES = {
     "turns_backward": "lane uses at the other end", "clearance_m": "clearance", "speed_mph": "speed before",
     "stem": "leg that ends there", "minor": "has the sign", "near_crash": "near crash",
 }  # fmt: skip
+_JUNCTIONS = {record.kind: record.called.removeprefix("a ") for record in JUNCTIONS}
 _UNITS = {"_mph": "mph", "_m": "m", "_deg": "°", "_s": "s"}
 
 
@@ -40,6 +43,8 @@ def shown(field: str, value: Any) -> str:
         return "yes" if value else "no"
     if isinstance(value, list | tuple):
         return ", ".join(str(v).replace("_", " ") for v in value) or "none"
+    if field.endswith("junction.kind"):
+        return _JUNCTIONS.get(value, str(value).replace("_", " "))
     unit = unit_of(field)
     text = f"{value:g}" if isinstance(value, int | float) else str(value).replace("_", " ")
     return f"{text} {unit}" if unit and isinstance(value, int | float) else text
