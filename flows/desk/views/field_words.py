@@ -16,6 +16,7 @@ _NAMES = {
     "start_direction": "direction on its road", "turns_forward": "lane uses towards the junction",
     "turns_backward": "lane uses at the other end", "clearance_m": "clearance", "speed_mph": "speed before",
     "stem": "leg that ends there", "minor": "has the sign", "near_crash": "near crash",
+    "facing_deg": "faces at rest", "where": "rests", "lane_way": "rests in a lane toward", "distance_m": "rests after",
 }  # fmt: skip
 _JUNCTIONS = {record.kind: record.called.removeprefix("a ") for record in JUNCTIONS}
 _UNITS = {"_mph": "mph", "_m": "m", "_deg": "°", "_s": "s"}
@@ -26,8 +27,8 @@ def name_of(field: str) -> str:
     last = field.rpartition(".")[2]
     if last in _NAMES:
         return _NAMES[last]
-    unit = unit_of(field)
-    return (last.removesuffix(f"_{unit}") if unit else last).replace("_", " ")
+    end = next((end for end in _UNITS if last.endswith(end)), "")
+    return last.removesuffix(end).replace("_", " ")
 
 
 def unit_of(field: str) -> str:
