@@ -51,7 +51,10 @@ _SPEEDS_TOP, _SPEEDS = 50 + 19 * _REPORT_LINES + 14, 5
 
 
 def film(folder: Path, out: Path, kinds: Sequence[str], fps: int) -> Iterator[Path]:
-    """Write a case's films into a folder, each whole or not at all; paths as they come. Raises BadInput, MissingTool."""
+    """Write a case's films into a folder, each whole or not at all; paths as they are ready.
+
+    Raises BadInput, MissingTool.
+    """
     scene = Shots(FinishedCase(folder))
     if "mp4" in kinds:
         check_ffmpeg()

@@ -9,10 +9,11 @@ FIELDS = {
     "start_speed_mph": "speed", "exit_road": "leaves by", "start_lane": "lane", "start_road": "starts on",
     "final_speed_mph": "last speed", "lane_word": "lane", "speed_mph": "speed", "speed_limit_mph": "speed limit",
     "meant_maneuver": "means to", "exit_heading": "turns to", "heading": "heads", "maneuver": "maneuver",
-    "where": "", "lane_way": "in a lane toward", "stem": "leg that ends there", "lanes_total": "lanes in all", "striker_area": "striking side", "struck_area": "struck side",
+    "where": "", "lane_way": "in a lane toward", "stem": "leg that ends there", "lanes_total": "lanes in all",
+    "striker_area": "striking side", "struck_area": "struck side",
 }  # fmt: skip
 """Display names of fields; other fields are shown by their own names."""
-_JUNCTIONS = {record.kind: record.called.removeprefix("a ") for record in JUNCTIONS}
+_JUNCTIONS: dict[str, str] = {record.kind: record.called.removeprefix("a ") for record in JUNCTIONS}
 UNITS = {"mph": " mph", "deg": " degrees", "m": " m"}
 
 

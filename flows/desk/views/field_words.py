@@ -18,7 +18,7 @@ _NAMES = {
     "stem": "leg that ends there", "minor": "has the sign", "near_crash": "near crash",
     "facing_deg": "faces at rest", "where": "rests", "lane_way": "rests in a lane toward", "distance_m": "rests after",
 }  # fmt: skip
-_JUNCTIONS = {record.kind: record.called.removeprefix("a ") for record in JUNCTIONS}
+_JUNCTIONS: dict[str, str] = {record.kind: record.called.removeprefix("a ") for record in JUNCTIONS}
 _UNITS = {"_mph": "mph", "_m": "m", "_deg": "°", "_s": "s"}
 
 
