@@ -18,3 +18,8 @@ def escape(text: str) -> str:
 def escape_plain(text: str) -> str:
     """The text with control characters made visible, for lines that rich does not write."""
     return "".join(c if c == "\n" or unicodedata.category(c) != "Cc" else "\ufffd" for c in text)
+
+
+def counted(number: int, noun: str) -> str:
+    """A number with its noun: "1 arm", "2 arms"."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"

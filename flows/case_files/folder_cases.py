@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from sgcad_core.errors import BadInput, ConfigError
-from sgcad_core.system.report_files import read_regular
+from sgcad_core.system.report_files import LOCK, facts_file, read_regular
 
 TEXTS = {"report.txt", "narrative.txt"}
 SUFFIXES = {".txt", ".xml", ".pdf"}
@@ -24,7 +24,8 @@ FEW = 5
 
 
 class Inside(NamedTuple):
-    """The reports of a folder, and the names of its other entries that are not hidden."""
+    """The reports of a folder, and the names of its other entries that are not hidden; facts of loose reports belong to
+    these."""
 
     reports: list[Path]
     left: list[str]
@@ -43,7 +44,8 @@ def inside(folder: Path) -> Inside:
     reports = [e for e in entries if e.is_dir() or _is_report(e)]
     if not reports:
         raise ConfigError(f"{folder}: it contains no case; put each report into a folder of its own, as report.txt")
-    return Inside(reports, [e.name for e in entries if e not in set(reports)])
+    own = {*reports, *map(facts_file, reports)}
+    return Inside(reports, [e.name for e in entries if e not in own and e.suffix != LOCK])
 
 
 def _holds_report(folder: Path) -> bool:

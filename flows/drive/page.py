@@ -67,7 +67,8 @@ def _words(told: Mapping[str, Any]) -> str:
     if told["braked_s"] is not None:
         ttc = told["braked_at_ttc_s"]
         at = f" at a time to collision of {ttc:.2f} s" if ttc is not None else ""
-        lines.append(f"It began to brake {told['braked_s']:.2f} s before that{at}.")
+        end = "the contact" if told["contact"] else "the closest approach"
+        lines.append(f"It began to brake {told['braked_s']:.2f} s before {end}{at}.")
     could = told.get("avoidance") or {}
     if could.get("brake_by_s") is not None:
         lines.append(

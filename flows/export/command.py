@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from sgcad_core.case.density import DENSITIES, NO_TRAFFIC, Density
-from sgcad_core.errors import ConfigError
+from sgcad_core.errors import ConfigError, MissingTool
 from sgcad_core.formats.openscenario.writing.versions import VERSIONS, Version
 
 Cases = Annotated[list[Path], typer.Argument(help="Folders of finished cases, or a folder of runs.")]
@@ -77,14 +77,22 @@ def _version(text: str) -> Version:
 def video(
     cases: Cases,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Folder for the films; default: the case's.")] = None,
-    kinds: Annotated[str, typer.Option("--format", "-f", help="mp4, gif, or both with a comma.")] = "mp4,gif",
+    kinds: Annotated[
+        str, typer.Option("--format", "-f", help="mp4, gif, or both with a comma; default: both, a gif without ffmpeg.")
+    ] = "",
     fps: Annotated[int, typer.Option(help="Frames a second of the mp4; a gif has 10 at most.", min=5, max=60)] = 20,
 ) -> None:
     """Film finished cases: plan view, report, speeds and the verdict; crash.mp4 and crash.gif in each case's folder."""
     from flows.drive.script_of_case import case_folders
-    from flows.export.film import KINDS, film
+    from flows.export.film import KINDS, check_ffmpeg, film
 
-    named = [kind.strip() for kind in kinds.split(",") if kind.strip()]
+    named = [kind.strip() for kind in kinds.split(",") if kind.strip()] if kinds else list(KINDS)
+    if not kinds:
+        try:
+            check_ffmpeg()
+        except MissingTool as fault:
+            typer.echo(f"no {fault}", err=True)
+            named.remove("mp4")
     if not named or (wrong := [kind for kind in named if kind not in KINDS]):
         raise ConfigError(f"--format {wrong[0] if named else kinds!r}: no such film; films: {', '.join(KINDS)}")
     for folder in case_folders(cases):

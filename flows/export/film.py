@@ -25,6 +25,7 @@ from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.case.verdict_told import verdict_sentence
 from sgcad_core.errors import MissingTool
 from sgcad_core.geometry.plane import Box, corners
+from sgcad_core.system import temp_folders
 from sgcad_core.system.pictures import opened
 from sgcad_core.units import MPS_PER_MPH
 
@@ -49,21 +50,27 @@ _SPEEDS_TOP, _SPEEDS = 50 + 19 * _REPORT_LINES + 14, 5
 """Pixels from the top to the speeds, and of how many actors they are told."""
 
 
-def film(folder: Path, out: Path, kinds: Sequence[str], fps: int) -> list[Path]:
-    """Write a case's films into a folder; their paths. Raises BadInput, MissingTool."""
+def film(folder: Path, out: Path, kinds: Sequence[str], fps: int) -> Iterator[Path]:
+    """Write a case's films into a folder, each whole or not at all; paths as they are ready.
+
+    Raises BadInput, MissingTool.
+    """
     scene = Shots(FinishedCase(folder))
     if "mp4" in kinds:
-        _ffmpeg()
+        check_ffmpeg()
     out.mkdir(parents=True, exist_ok=True)
-    written = []
-    if "mp4" in kinds:
-        written.append(_mp4(scene, out / "crash.mp4", fps))
-    if "gif" in kinds:
-        written.append(_gif(scene, out / "crash.gif"))
-    return written
+    with temp_folders.folder_beside(out / "crash") as partial:  # a film takes a while, and a cut one plays too
+        for kind in (kind for kind in KINDS if kind in kinds):
+            file = partial / f"crash.{kind}"
+            if kind == "mp4":
+                _mp4(scene, file, fps)
+            else:
+                _gif(scene, file)
+            yield file.replace(out / file.name)
 
 
-def _ffmpeg() -> Any:
+def check_ffmpeg() -> Any:
+    """The module that brings ffmpeg. Raises MissingTool."""
     try:
         import imageio_ffmpeg
     except ImportError as fault:
@@ -73,22 +80,20 @@ def _ffmpeg() -> Any:
     return imageio_ffmpeg
 
 
-def _mp4(scene: Shots, file: Path, fps: int) -> Path:
-    writer = _ffmpeg().write_frames(str(file), (SIDE + PANEL, SIDE), fps=fps, macro_block_size=2)
+def _mp4(scene: Shots, file: Path, fps: int) -> None:
+    writer = check_ffmpeg().write_frames(str(file), (SIDE + PANEL, SIDE), fps=fps, macro_block_size=2)
     writer.send(None)
     try:
         for picture in scene.frames(fps):
             writer.send(picture.tobytes())
     finally:
         writer.close()
-    return file
 
 
-def _gif(scene: Shots, file: Path) -> Path:
+def _gif(scene: Shots, file: Path) -> None:
     size = round((SIDE + PANEL) * GIF_SCALE), round(SIDE * GIF_SCALE)
     shots = [picture.resize(size).quantize(128) for picture in scene.frames(GIF_FPS)]
     shots[0].save(file, save_all=True, append_images=shots[1:], duration=round(1000 / GIF_FPS), loop=0, optimize=True)
-    return file
 
 
 @dataclass(frozen=True)

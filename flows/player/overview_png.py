@@ -16,9 +16,12 @@ from sgcad_core.roads.closures import CONE_M
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from sgcad_core.case.records import Trajectory
+
 SIZE_IN = 6.4
 DPI = 110
-MARGIN_M = 14.0
+MARGIN_M, LEAST_M, MOST_M = 14.0, 25.0, 75.0
+"""Of half the side: around the paths, at least, and at most where there is a contact to stand in the middle."""
 GHOST_S = 1.0
 """Time between two drawn boxes of an actor; earlier ones are paler."""
 CONE = "#ff7a1a"
@@ -62,13 +65,16 @@ def _draw(view: View) -> bytes:
 
 
 def frame(view: View) -> tuple[tuple[float, float], float]:
-    """Middle and half the side of the square that holds every path, metres."""
+    """Middle and half the side of the square that holds every path, or 150 m around a contact, metres."""
     if not view.movers:
         return (0.0, 0.0), 60.0
     points = np.vstack([m.track.points for m in view.movers])
     low, high = points.min(axis=0), points.max(axis=0)
+    half, contact = max(float((high - low).max()) / 2 + MARGIN_M, LEAST_M), view.contact_point()
+    if contact is not None and half > MOST_M:
+        return contact, MOST_M
     middle = (low + high) / 2
-    return (float(middle[0]), float(middle[1])), float(max((high - low).max() / 2 + MARGIN_M, 25.0))
+    return (float(middle[0]), float(middle[1])), half
 
 
 def draw_network(axes: Axes, drawing: Drawing, points_per_m: float) -> None:
@@ -106,11 +112,21 @@ def draw_path(axes: Axes, mover: Mover) -> None:
     axes.add_collection(
         PolyCollection(boxes, facecolors=color, edgecolors="white", linewidths=0.5, alpha=alphas, zorder=4)
     )
-    label = axes.annotate(mover.info.id, (track.x_m[0], track.y_m[0]), xytext=(7, 7), textcoords="offset points")
+    first = _first_shown(axes, track)
+    label = axes.annotate(mover.info.id, first, xytext=(7, 7), textcoords="offset points", annotation_clip=False)
     label.set(color="white", fontsize=8, fontweight="bold", zorder=6)
     label.set_bbox(
         {"boxstyle": "round,pad=0.25", "facecolor": label_color(color), "edgecolor": "white", "linewidth": 0.8}
     )
+
+
+def _first_shown(axes: Axes, track: Trajectory) -> tuple[float, float]:
+    """Where a path begins, or comes into the picture, with room for a name."""
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    room = 0.06 * (right - left)
+    across = (track.x_m > left + room) & (track.x_m < right - room)
+    k = int(np.argmax(across & (track.y_m > bottom + room) & (track.y_m < top - room)))
+    return float(track.x_m[k]), float(track.y_m[k])
 
 
 def _traffic(axes: Axes, view: View) -> None:
@@ -147,9 +163,11 @@ def _legend(axes: Axes, view: View) -> None:
         text += f" at {near['t_s']:.1f} s"
     text += f"\ngray: traffic {'at that time' if observed else 'halfway'}" if view.traffic else ""
     box = {"boxstyle": "round,pad=0.4", "facecolor": "white", "alpha": 0.85, "edgecolor": "none"}
-    axes.text(0.02, 0.98, text, transform=axes.transAxes, va="top", fontsize=8.5, bbox=box, parse_math=False)
+    axes.text(0.02, 0.98, text, transform=axes.transAxes, va="top", fontsize=8.5, bbox=box, parse_math=False, zorder=7)
     half = (axes.get_xlim()[1] - axes.get_xlim()[0]) / 2
     length = next(m for m in (100, 50, 20, 10, 5) if m < half * 0.8)
     left = 0.97 - length / (2 * half)
-    axes.plot([left, 0.97], [0.035, 0.035], transform=axes.transAxes, color="#333", linewidth=2.5)
-    axes.text(0.97, 0.045, f"{length} m · north up", transform=axes.transAxes, ha="right", fontsize=8, color="#333")
+    axes.fill_between([left - 0.01, 0.98], 0.02, 0.075, transform=axes.transAxes, color="white", alpha=0.85, zorder=6)
+    axes.plot([left, 0.97], [0.035, 0.035], transform=axes.transAxes, color="#333", linewidth=2.5, zorder=7)
+    said = f"{length} m · north up"
+    axes.text(0.97, 0.045, said, transform=axes.transAxes, ha="right", fontsize=8, color="#333", zorder=7)

@@ -6,7 +6,12 @@
   const contact = data.collision.observed, declared = data.collision.declared;
   const near = data.near_crash, closest = near && !contact ? near.observed : null;
   const moment = contact || closest, momentStep = moment ? moment.t_s / step : null, contactStep = contact ? momentStep : null;
-  const COLOR = { ground: "#e9ece4", asphalt: "#5d636a", path: "#a9a69c", edge: "#f2f2ee", lane: "#f2f2ee", center: "#efbf3f", stop: "#ffffff", hit: "#d7263d", lit: "#b99a2e", halo: "#ffd84d", cone: "#ff7a1a" };
+  const COLOR = { asphalt: "#5d636a", edge: "#f2f2ee", lane: "#f2f2ee", center: "#efbf3f", stop: "#ffffff", hit: "#d7263d", lit: "#b99a2e", halo: "#ffd84d", cone: "#ff7a1a" };
+  const DARK = matchMedia("(prefers-color-scheme: dark)");
+  const useTheme = () => Object.assign(COLOR, DARK.matches
+    ? { ground: "#242b2a", verge: "#37403d", path: "#85837b", text: "#e4e7e9", line: "#c3ccd2", faint: "#e58fc4", cursor: "#58b4dc" }
+    : { ground: "#e9ece4", verge: "#d3d8cc", path: "#a9a69c", text: "#22282d", line: "#3b444c", faint: "#a0447a", cursor: "#0b6e99" });
+  useTheme();
   const WIDTH_M = { edge: 0.15, lane: 0.15, center: 0.2, stop: 0.55 };
   const seated = parent !== window && /[#&]embed\b/.test(location.hash);   // in the desk: the stage alone, which says what is pointed at
   document.body.classList.toggle("seated", seated);
@@ -57,12 +62,12 @@
     ink.lineJoin = "round"; ink.lineCap = "butt";
     for (const pass of [0.9, 0]) {                       // a pale verge first, then the asphalt
       for (const area of data.drawing.areas) {
-        trace(area); ink.closePath(); ink.fillStyle = ink.strokeStyle = pass ? "#d3d8cc" : COLOR.asphalt;
+        trace(area); ink.closePath(); ink.fillStyle = ink.strokeStyle = pass ? COLOR.verge : COLOR.asphalt;
         ink.lineWidth = pass * 2; ink.fill(); if (pass) ink.stroke();
       }
       for (const [width, cars, flat, road] of data.drawing.strips) {
         const asphalt = lit.has(road) ? COLOR.lit : COLOR.asphalt;
-        trace(flat); ink.lineWidth = width + pass * 2 + 0.05; ink.strokeStyle = pass ? "#d3d8cc" : cars ? asphalt : COLOR.path; ink.stroke();
+        trace(flat); ink.lineWidth = width + pass * 2 + 0.05; ink.strokeStyle = pass ? COLOR.verge : cars ? asphalt : COLOR.path; ink.stroke();
       }
     }
     for (const gore of data.drawing.gores || []) {         // painted triangles: asphalt, hatched
@@ -267,7 +272,7 @@
     if (layer.names) drawNames();
     drawContact(); if (layer.labels) pane.actors.forEach(drawLabel);
     if (measured) drawMeasure();
-    if (halves > 1) { ink.fillStyle = "#22282d"; ink.font = "700 13px system-ui, sans-serif"; ink.textAlign = "center"; ink.fillText(pane.name, pane.left + pane.wide / 2, h - 14); ink.fillRect(pane.left - 1, 0, 2, h); }
+    if (halves > 1) { ink.fillStyle = COLOR.text; ink.font = "700 13px system-ui, sans-serif"; ink.textAlign = "center"; ink.fillText(pane.name, pane.left + pane.wide / 2, h - 14); ink.fillRect(pane.left - 1, 0, 2, h); }
     ink.restore();
   }
   function drawMeasure() {

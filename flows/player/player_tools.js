@@ -19,7 +19,7 @@
   // ---------------------------------------------------------------- units
   const UNITS = [["mph", 2.23694], ["km/h", 3.6], ["m/s", 1]];
   let units = 0;
-  const speedText = (mps) => `${(mps * UNITS[units][1]).toFixed(UNITS[units][0] === "m/s" ? 1 : 0)} ${UNITS[units][0]}`;
+  const speedText = (mps) => `${(mps * UNITS[units][1]).toFixed(UNITS[units][0] === "m/s" ? 1 : 0)}\u00a0${UNITS[units][0]}`;
   for (const [name] of UNITS) $("unit").append(Object.assign(document.createElement("option"), { textContent: name }));
   function useUnit(k) { units = k; $("unit").selectedIndex = k; fillSpeeds(); drawPlots(); draw(); }
   const nextUnit = () => useUnit((units + 1) % UNITS.length);
@@ -39,9 +39,9 @@
   }
 
   // ---------------------------------------------------------------- plots under the slider; another run's lines are dashed
-  const near0 = data.near, TTC_S = 6, INK = "#3b444c", FAINT = "#a0447a";
+  const near0 = data.near, TTC_S = 6;
   const inUnits = (a) => [a.color, a.speed.map((v) => v * UNITS[units][1])];
-  const ofPair = (name) => [near0, other && other.near].flatMap((n, k) => n ? [[k ? FAINT : INK, n[name], k > 0]] : []);
+  const ofPair = (name) => [near0, other && other.near].flatMap((n, k) => n ? [[k ? COLOR.faint : COLOR.line, n[name], k > 0]] : []);
   const PLOTS = [
     ["speed", () => [...data.actors.map(inUnits), ...(other ? inRun(other).map((a) => [...inUnits(a), true]) : [])], () => UNITS[units][0], Infinity],
     ["clearance", () => ofPair("clearance_m"), () => "m", 40],
@@ -84,10 +84,11 @@
       if (!drawn) continue;
       const pen = line.getContext("2d"), x = (now / Math.max(last, 1)) * line.width;
       pen.putImageData(drawn, 0, 0);
-      pen.save(); pen.setTransform(1, 0, 0, 1, 0, 0); pen.fillStyle = "#0b6e99"; pen.fillRect(x - 1, 0, 2, line.height); pen.restore();
+      pen.save(); pen.setTransform(1, 0, 0, 1, 0, 0); pen.fillStyle = COLOR.cursor; pen.fillRect(x - 1, 0, 2, line.height); pen.restore();
     }
   }
   new ResizeObserver(drawPlots).observe($("plots"));
+  DARK.addEventListener("change", () => { useTheme(); drawPlots(); draw(); });
 
   // ---------------------------------------------------------------- layers, measuring
   for (const name of Object.keys(layer)) {

@@ -55,10 +55,10 @@
     if (v && typeof v === "object") return Object.entries(v).map(([k, one]) => `${k} ${figure(key, one)}`).join(", ");
     if (typeof v !== "number") return show(v);
     const [unit] = [unitOf(key)];
-    if (key === "contact_energy_j") return `${(v / 1000).toFixed(1)} kJ`;
+    if (key === "contact_energy_j") return `${(v / 1000).toFixed(1)}\u00a0kJ`;
     if (unit === "m/s²" && v > HARDEST_MPS2) return `over ${HARDEST_MPS2} ${unit}: more than brakes give`;
     if (/probability|risk/.test(key)) return `${(100 * v).toFixed(v < 0.1 ? 2 : 0)} %`;
-    return unit ? `${plainly(v)} ${unit}` : plainly(v);
+    return unit ? `${plainly(v)}\u00a0${unit}` : plainly(v);
   }
 
   // ---------------------------------------------------------------- report, verdict, account, tables

@@ -17,6 +17,7 @@ from flows.results.levels import LABELS, SHOULD_REFUSE, base_of
 from flows.results.measures import Measure, study_values
 from flows.results.reading import Arm, Study
 from flows.study.published import Published, publication
+from flows.terminal import counted
 from sgcad_core.case.records import Floats
 from sgcad_core.metrics import statistics
 from sgcad_core.metrics.statistics import Interval
@@ -110,7 +111,8 @@ def reference_of(study: Study) -> str | None:
 
 def _remarks(study: Study) -> list[str]:
     done, of = study.progress()
-    told = [f"{done} of {of} runs are done ({len(study.arms)} arms, {len(study.cases)} cases)."]
+    arms, cases = counted(len(study.arms), "arm"), counted(len(study.cases), "case")
+    told = [f"{done} of {of} runs are done ({arms}, {cases})."]
     labelled = sum(case in study.labels for case in study.cases)
     if not labelled:
         told.append("No ground truth: tables of network errors and of the crash against the truth are left out.")

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from sgcad_core.kinds import JUNCTIONS
 from sgcad_core.records.facts import Value
 
 FIELDS = {
     "start_speed_mph": "speed", "exit_road": "leaves by", "start_lane": "lane", "start_road": "starts on",
     "final_speed_mph": "last speed", "lane_word": "lane", "speed_mph": "speed", "speed_limit_mph": "speed limit",
     "meant_maneuver": "means to", "exit_heading": "turns to", "heading": "heads", "maneuver": "maneuver",
-    "lanes_total": "lanes in all", "striker_area": "striking side", "struck_area": "struck side",
+    "where": "", "lane_way": "in a lane toward", "stem": "leg that ends there", "lanes_total": "lanes in all",
+    "striker_area": "striking side", "struck_area": "struck side",
 }  # fmt: skip
 """Display names of fields; other fields are shown by their own names."""
+_JUNCTIONS: dict[str, str] = {record.kind: record.called.removeprefix("a ") for record in JUNCTIONS}
 UNITS = {"mph": " mph", "deg": " degrees", "m": " m"}
 
 
 def named(field: str) -> tuple[str, str]:
-    """Subject and display name of a field: "vehicles.V1.rest.where" -> ("V1", "rest where")."""
+    """Subject and display name of a field: "vehicles.V1.rest.where" -> ("V1", "rest")."""
     kind, *rest = field.split(".")
     if kind in ("vehicles", "others") and rest:
         return rest[0], _called(rest[1:])
@@ -28,9 +31,8 @@ def named(field: str) -> tuple[str, str]:
 
 
 def _called(names: list[str]) -> str:
-    return " ".join(
-        FIELDS.get(name, name.replace("_", " ").removesuffix(" mph").removesuffix(" deg")) for name in names
-    )
+    words = (FIELDS.get(name, name.replace("_", " ").removesuffix(" mph").removesuffix(" deg")) for name in names)
+    return " ".join(filter(None, words))
 
 
 def shown(field: str, value: Value) -> str:
@@ -39,6 +41,8 @@ def shown(field: str, value: Value) -> str:
         return "yes"
     if value is None:
         return "none"
+    if field == "junction.kind" and value in _JUNCTIONS:
+        return _JUNCTIONS[str(value)]
     text = ", ".join(value) if isinstance(value, tuple | list) else str(value).replace("_", " ")
     return text + UNITS.get(field.rpartition("_")[2], "") if "_" in field.rpartition(".")[2] else text
 

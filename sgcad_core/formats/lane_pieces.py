@@ -14,6 +14,8 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats, distinct, offset_polyline
 from sgcad_core.roads.lane_graph import Connection, Lane, LaneGraph
 
+GAP_M = 0.3
+"""Lanes of opposite directions whose left edges are no farther apart share one: there is no ground between them."""
 LEAST_M = 0.5
 """A shorter way across a node is left out: its lanes follow each other directly."""
 
@@ -35,9 +37,14 @@ class Piece:
     left: str = ""
     """The next lane of the same direction to the left, or empty."""
     right: str = ""
+    opposite: str = ""
+    """The lane against it on its left, or empty; both have `shared` as their left edge, each in its own direction."""
+    shared: Floats | None = None
 
     def side(self, sign: int) -> Floats:
         """(n, 2) its left (1) or right (-1) edge."""
+        if self.shared is not None and sign > 0:
+            return self.shared
         return offset_polyline(self.line, sign * self.width_m / 2)
 
     @property
@@ -49,6 +56,7 @@ class Piece:
 def pieces_of(graph: LaneGraph) -> dict[str, Piece]:
     """All pieces by id, with what comes before, behind and beside them."""
     found = {piece.id: piece for piece in _lanes(graph)}
+    _join_opposite(graph, found)
     for number, connection in enumerate(graph.connections):
         first, last = (_lane(graph, *end) for end in _ends(connection))
         if first is None or last is None or first.id not in found or last.id not in found:
@@ -72,6 +80,24 @@ def _lanes(graph: LaneGraph) -> Iterator[Piece]:
             beyond = lanes[k + 1] if k + 1 < len(lanes) else None
             piece.left = beyond.id if beyond is not None and beyond.allows_cars == lane.allows_cars else ""
             yield piece
+
+
+def _join_opposite(graph: LaneGraph, found: dict[str, Piece]) -> None:
+    """Give the innermost lanes of both directions of a road one edge where they lie side by side."""
+    inner = {
+        (edge.from_node, edge.to_node): found[edge.lanes[-1].id]
+        for edge in graph.edges.values()
+        if edge.lanes and edge.lanes[-1].id in found
+    }
+    for (start, end), one in inner.items():
+        other = inner.get((end, start))
+        if other is None or one.opposite or one.cars != other.cars or len(one.line) != len(other.line):
+            continue
+        mine, theirs = one.side(1), other.side(1)[::-1]
+        if float(np.hypot(*(mine - theirs).T).max()) <= GAP_M:
+            one.opposite, other.opposite = other.id, one.id
+            one.shared = (mine + theirs) / 2
+            other.shared = one.shared[::-1]
 
 
 def _ends(connection: Connection) -> tuple[tuple[str, int], tuple[str, int]]:

@@ -29,6 +29,9 @@ from sgcad_core.records.specs import (
 from sgcad_core.roads.circle import Mouth, Rim, circle_roads, node_of, rim_of
 from sgcad_core.roads.road_geometry import LANE_M, MEDIAN_M, beside_m
 
+HUB = "hub"
+"""Id of the junction that a layout draws."""
+
 COMPASS: tuple[Compass, ...] = get_args(Compass)
 OUTER = "_outer"
 """Behind a leg's name: its piece beyond the last access."""
@@ -76,7 +79,7 @@ def road_spec(layout: RoadLayout, leg_m: float = LEG_M) -> RoadSpec:
 
 def _hub(layout: RoadLayout, legs: Sequence[Leg]) -> Node:
     opens = layout.opening and len(legs) == 2
-    return Node(id="hub", x_m=0, y_m=0, control=hub_control(legs), opening=opens)
+    return Node(id=HUB, x_m=0, y_m=0, control=hub_control(legs), opening=opens)
 
 
 def hub_control(legs: Sequence[Leg]) -> NodeControl:
@@ -195,7 +198,7 @@ class _LegDrawing:
         joints = self._joints(accesses)
         length = max(self.length_m, joints[-1][0] + BEYOND_JOINT_M if joints else 0.0)
         name = self.leg.bearing
-        places = [(node_of(name), self.rim.radius_m)] if self.rim else [("hub", 0.0)]
+        places = [(node_of(name), self.rim.radius_m)] if self.rim else [(HUB, 0.0)]
         places += [(f"{name}_joint{_number(i)}", s) for i, (s, _) in enumerate(joints)]
         places += [(f"{name}_end", length)]
         nodes = [_node(n, self.path.at(s), self._joint_control(n, joints)) for n, s in places[1:]]

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.metrics.lane_places import PLACES
 from sgcad_core.roads.lane_graph import Crossing
+from sgcad_core.rules.passages import junction_words
 from sgcad_core.rules.records import Mover, RuleFinding, RuleScene, Status
 from sgcad_core.rules.right_of_way import meeting
 
@@ -86,7 +87,7 @@ def _pair(scene: RuleScene, walk: Walk, states: set[str] | None, mover: Mover) -
 
 
 def _where(walk: Walk) -> str:
-    return f"crosswalk at {walk.crossing.node}" if walk.crossing else "on the road, no crosswalk"
+    return f"crosswalk at {junction_words(walk.crossing.node)}" if walk.crossing else "on the road, no crosswalk"
 
 
 def _in(crossing: Crossing, person: Mover) -> NDArray[np.bool_]:

@@ -16,6 +16,7 @@ from sgcad_core.geometry.distances import distance_to, nearest_on
 from sgcad_core.geometry.plane import Floats, arc_lengths
 from sgcad_core.metrics.lane_places import EDGE_M
 from sgcad_core.roads.lane_graph import Connection, Edge, LaneGraph
+from sgcad_core.roads.layout import HUB
 from sgcad_core.rules.records import Mover
 
 LINE_M = LINE_BACK_M - STOP_LINE_M / 2
@@ -40,7 +41,12 @@ class Passage(NamedTuple):
     @property
     def where(self) -> str:
         """The approach in words."""
-        return f"from {self.link.from_edge} into {self.node}"
+        return f"from {self.link.from_edge} into {junction_words(self.node)}"
+
+
+def junction_words(node: str) -> str:
+    """A node for a person: the one of a drawn junction has a name that only maps use."""
+    return "the junction" if node == HUB else node
 
 
 def passages(graph: LaneGraph, mover: Mover) -> Iterator[Passage]:

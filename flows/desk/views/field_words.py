@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from sgcad_core.kinds import JUNCTIONS
+
 _NAMES = {
     "kind": "is a", "start_speed_mph": "speed before", "final_speed_mph": "last speed", "start_road": "starts on",
     "start_lane": "starts in lane", "exit_road": "leaves by", "lane_word": "lane as told", "striker": "striker",
@@ -14,7 +16,9 @@ _NAMES = {
     "start_direction": "direction on its road", "turns_forward": "lane uses towards the junction",
     "turns_backward": "lane uses at the other end", "clearance_m": "clearance", "speed_mph": "speed before",
     "stem": "leg that ends there", "minor": "has the sign", "near_crash": "near crash",
+    "facing_deg": "faces at rest", "where": "rests", "lane_way": "rests in a lane toward", "distance_m": "rests after",
 }  # fmt: skip
+_JUNCTIONS: dict[str, str] = {record.kind: record.called.removeprefix("a ") for record in JUNCTIONS}
 _UNITS = {"_mph": "mph", "_m": "m", "_deg": "°", "_s": "s"}
 
 
@@ -23,8 +27,8 @@ def name_of(field: str) -> str:
     last = field.rpartition(".")[2]
     if last in _NAMES:
         return _NAMES[last]
-    unit = unit_of(field)
-    return (last.removesuffix(f"_{unit}") if unit else last).replace("_", " ")
+    end = next((end for end in _UNITS if last.endswith(end)), "")
+    return last.removesuffix(end).replace("_", " ")
 
 
 def unit_of(field: str) -> str:
@@ -40,6 +44,8 @@ def shown(field: str, value: Any) -> str:
         return "yes" if value else "no"
     if isinstance(value, list | tuple):
         return ", ".join(str(v).replace("_", " ") for v in value) or "none"
+    if field.endswith("junction.kind"):
+        return _JUNCTIONS.get(value, str(value).replace("_", " "))
     unit = unit_of(field)
     text = f"{value:g}" if isinstance(value, int | float) else str(value).replace("_", " ")
     return f"{text} {unit}" if unit and isinstance(value, int | float) else text

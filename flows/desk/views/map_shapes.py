@@ -26,6 +26,8 @@ MARGIN_M = 12.0
 LEAST_HALF_M, MOST_HALF_M = 30.0, 160.0
 NETWORK_HALF_M = 70.0
 """Half the side of the shown square of a network without trajectories."""
+BESIDE_M = 5.0
+"""From the edge of a road to the middle of its name."""
 COLORS = 8
 """Colors of vehicles; the stylesheet names them c0 to c7, in the player's order."""
 
@@ -135,7 +137,11 @@ def _names(graph: LaneGraph, box: tuple[float, float, float, float]) -> Iterable
             seen.add(road)
             hub = np.array([x + wide / 2, -(y + high / 2)])
             far = max(inside, key=lambda p: float(np.hypot(*(p - hub))))
-            yield road, round(float(far[0]), 1), round(-float(far[1]), 1)
+            along = shape[-1] - shape[0]
+            aside = np.array([along[1], -along[0]]) / max(float(np.hypot(*along)), 1e-6)
+            far = far + (edge.lanes[0].width_m / 2 + BESIDE_M) * aside  # to the right of its outer lane
+            inner = (np.clip(far[0], x + 4, x + wide - 4), np.clip(far[1], -(y + high - 4), -(y + 4)))
+            yield road, round(float(inner[0]), 1), round(-float(inner[1]), 1)
 
 
 def _dense(shape: Floats) -> Floats:

@@ -21,6 +21,7 @@ from flows.results.report.plots import Plot
 from flows.results.table import Cell, Row, Table, Tables
 from flows.results.writing import HOW, SIGNIFICANT, bracket, header, number, p_text
 from flows.study.published import publication
+from flows.terminal import counted
 from sgcad_core.result import counts_of
 
 HERE = Path(__file__).parent
@@ -73,7 +74,8 @@ def _accounts(tables: Tables) -> str:
         if known:
             whole, lacking = sum(a["verdict"] == "whole" for a in known), sum(a["lacking"] for a in known)
             good = whole == len(known)
-            words = "nothing told is lacking" if good else f"{lacking} things told are lacking"
+            are = "is" if lacking == 1 else "are"
+            words = "nothing told is lacking" if good else f"{counted(lacking, 'thing')} told {are} lacking"
             told.append(
                 f'<p class="account {"good" if good else "amber"}">{"✓" if good else "⚠"} {escape(arm.label)}: '
                 f"{words}; {whole} of {len(known)} scenarios have all that their report tells, "

@@ -112,6 +112,8 @@ def _beside(piece: Piece, numbers: Mapping[str, int]) -> Iterator[ET.Element]:
     for tag, name in (("adjacentLeft", piece.left), ("adjacentRight", piece.right)):
         if name:
             yield _node(tag, ref=str(numbers[name]), drivingDir="same")
+        elif tag == "adjacentLeft" and piece.opposite:
+            yield _node(tag, ref=str(numbers[piece.opposite]), drivingDir="opposite")
 
 
 def _bound(tag: str, line: Floats) -> ET.Element:

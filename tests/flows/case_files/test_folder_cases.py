@@ -32,6 +32,14 @@ def test_every_visible_entry_is_a_case_or_named(mixed):
     assert list(left_out([mixed])) == left
 
 
+def test_facts_beside_a_loose_report_are_a_part_of_it(mixed):
+    before = left_out([mixed])
+    (mixed / "loose.txt.facts.yaml").write_text("edits: []\n")
+    assert left_out([mixed]) == before
+    (mixed / "other.txt.facts.yaml").write_text("edits: []\n")  # its report is gone
+    assert set(left_out([mixed])) - set(before) == {"cases/other.txt.facts.yaml"}
+
+
 def test_many_loose_reports_beside_one_folder_are_cases(tmp_path):
     (tmp_path / "a").mkdir()
     for number in range(115):

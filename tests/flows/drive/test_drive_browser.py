@@ -93,3 +93,21 @@ def test_a_drive_can_be_read_in_the_light_and_in_the_dark(tab, folder, theme):
     tab.open(f"file://{next(folder.glob('drive/aeb/*/drive.html'))}?{theme}")
     assert tab.poor() == []
     tab.theme("light")
+
+
+def test_the_stage_goes_dark_with_the_page_also_while_it_is_open(tab, folder):
+    corner = "[...document.querySelector('#view').getContext('2d').getImageData(2, 2, 1, 1).data.slice(0, 3)]"
+    tab.theme("light")
+    tab.open(f"file://{next(folder.glob('drive/aeb/*/drive.html'))}?stage")
+    assert min(tab.run(corner)) > 200
+    tab.theme("dark")
+    tab.until(f"Math.max(...{corner}) < 80")
+    tab.theme("light")
+
+
+def test_a_drive_says_before_what_it_braked(folder):
+    for file in folder.glob("drive/*/*/drive.json"):
+        told, page = json.loads(file.read_text()), (file.parent / "drive.html").read_text()
+        if told["braked_s"]:
+            end = "the contact" if told["contact"] else "the closest approach"
+            assert f"It began to brake {told['braked_s']:.2f} s before {end}" in page

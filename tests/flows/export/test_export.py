@@ -5,6 +5,7 @@ import json
 import pickle
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -140,7 +141,7 @@ def test_scenarionet_record_has_every_actor_the_map_and_the_ego(made):
 
 
 def test_film_shows_the_whole_time_with_the_report_and_the_verdict(made, tmp_path):
-    (file,) = film(made, tmp_path, ["gif"], 10)
+    (file,) = list(film(made, tmp_path, ["gif"], 10))
     shots = Image.open(file)
     end = float(FinishedCase(made).script.trajectories[0].t_s[-1])
     assert shots.n_frames == pytest.approx(10 * end + 11, abs=12)  # equal pictures are joined
@@ -183,10 +184,48 @@ def test_wrong_wishes_are_named_with_what_there_is(made, arguments, said):
     assert said in str(ended.exception)
 
 
+def encoder(file, size, **_):
+    """In the place of ffmpeg: each picture is written at once."""
+    with open(file, "wb") as out:
+        while True:
+            out.write((yield) or b"")
+            out.flush()
+
+
+@pytest.mark.parametrize("kind", ["mp4", "gif"])
+def test_film_that_is_cut_short_leaves_the_old_one_as_it_was(made, tmp_path, monkeypatch, kind):
+    (old := tmp_path / f"crash.{kind}").write_bytes(b"old")
+    whole = Shots.frames
+
+    def cut(self, fps):
+        yield from itertools.islice(whole(self, fps), 3)
+        assert old.read_bytes() == b"old"  # so a kill at this time would leave it too
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", SimpleNamespace(write_frames=encoder))
+    monkeypatch.setattr(Shots, "frames", cut)
+    with pytest.raises(KeyboardInterrupt):
+        list(film(made, tmp_path, [kind], 10))
+    assert old.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [old]
+    monkeypatch.setattr(Shots, "frames", lambda self, fps: itertools.islice(whole(self, fps), 3))
+    assert list(film(made, tmp_path, [kind], 10)) == [old]
+    assert len(old.read_bytes()) > 1000
+
+
 def test_film_without_ffmpeg_says_what_to_install(made, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     with pytest.raises(MissingTool, match=r"sg-cadvlm\[video\]"):
-        film(made, tmp_path, ["mp4"], 20)
+        list(film(made, tmp_path, ["mp4"], 20))
+
+
+def test_film_without_ffmpeg_is_a_gif_where_no_format_is_asked_for(made, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    monkeypatch.setattr(Shots, "frames", lambda self, fps: itertools.repeat(self._ground, 2))
+    ended = run("video", made, "--out", tmp_path)
+    assert ended.exit_code == 0, ended.output
+    assert [file.name for file in tmp_path.iterdir()] == ["crash.gif"]
+    assert "no mp4: ffmpeg is not installed; pip install" in ended.output
 
 
 # ------------------------------------------------------------------ traffic

@@ -167,6 +167,16 @@ def test_the_frame_holds_every_path():
     assert x - half < 26 < x + half
 
 
+def test_the_frame_of_long_paths_is_150_m_around_their_contact(monkeypatch):
+    monkeypatch.setattr(overview_png, "MOST_M", 30.0)
+    made = view(contact=True)
+    middle, half = overview_png.frame(made)
+    assert half == 30.0
+    assert middle == made.contact_point()
+    monkeypatch.setattr(overview_png, "MARGIN_M", 200.0)
+    assert overview_png.frame(view(contact=False))[1] > 200
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium to look with")
 def test_the_page_runs_in_a_browser_and_stops_no_script(tmp_path):

@@ -69,7 +69,7 @@ def test_speeds_before_and_at_contact_and_their_change_stand_in_one_unit_that_ca
     cells = "[...document.querySelectorAll('#speeds tr')].slice(1).map(r => [...r.children].map(c => c.textContent))"
     mph = page.run(cells)
     assert mph[1][0] == "V2"
-    assert mph[1][1] == "35 mph (assumed)"
+    assert mph[1][1] == "35\u00a0mph (assumed)"
     page.key("u")
     kmh = page.run(cells)
     assert all(cell.split()[1] == "km/h" for row in kmh for cell in row[1:])

@@ -68,7 +68,8 @@ def test_p_values_are_corrected_for_the_number_of_arms(tables):
 
 def test_a_study_half_done_says_so_and_stands_on_what_is_there(tables):
     made = tables({"a": {"c0": {}, "c1": {}}, "b": {"c1": {}}}, cases=["c0", "c1", "c2"])
-    assert made.remarks[0].startswith("3 of 6 runs are done")
+    assert made.remarks[0] == "3 of 6 runs are done (2 arms, 3 cases)."
+    assert tables({"a": {"c0": {}}}).remarks[0] == "1 of 1 runs are done (1 arm, 1 case)."
     (table,) = [t for t in made.tables if t.key == "generation"]
     assert [(r.done, r.of) for r in table.rows] == [(2, 3), (1, 3)]
     assert table.rows[1].cells["generated"].n == 1

@@ -248,10 +248,12 @@ def test_a_total_may_be_that_of_one_carriageway_where_the_words_allow_it(road, h
 # ------------------------------------------------------------------ words
 @pytest.mark.parametrize(("field", "value", "words"), [
     ("vehicles.V2.start_speed_mph", 35, "V2 speed 35 mph"),
-    ("vehicles.V1.rest.where", "ditch", "V1 rest where ditch"),
+    ("vehicles.V1.rest.where", "ditch", "V1 rest ditch"),
     ("contacts.0.striker_area", "front", "contact 1 striking side front"),
     ("roads.main.lanes_total", 5, "road main lanes in all 5"),
     ("junction.control", "signal", "junction control signal"),
+    ("junction.kind", "t", "junction kind T-intersection"),
+    ("vehicles.V1.rest.lane_way", "S", "V1 rest in a lane toward S"),
     ("vehicles.V1.parked", True, "V1 parked"),
 ])  # fmt: skip
 def test_items_are_named_as_people_speak(field, value, words):

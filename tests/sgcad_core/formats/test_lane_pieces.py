@@ -26,6 +26,17 @@ def test_lanes_of_one_direction_are_neighbors(graph):
     assert (pieces["A_0"].right, pieces["A_1"].left) == ("", "")
 
 
+@pytest.mark.parametrize(("apart", "joined"), [(0.0, True), (0.2, True), (2.0, False)])
+def test_lanes_against_each_other_share_an_edge_where_nothing_lies_between_them(graph, apart, joined):
+    shape = np.array([[50.0, 7.0 + apart], [0.0, 7.0 + apart]])
+    back = Edge("back", "b", "a", (Lane("back_0", 0, shape, 3.5, 50.0, 13.9, True),))
+    pieces = pieces_of(LaneGraph({**graph.edges, "back": back}, graph.connections, graph.nodes))
+    one, other = pieces["A_1"], pieces["back_0"]
+    assert (one.opposite, other.opposite) == (("back_0", "A_1") if joined else ("", ""))
+    assert np.array_equal(one.side(1), other.side(1)[::-1]) == (joined or apart == 0)
+    assert one.side(1)[:, 1] == pytest.approx([5.25 + (apart / 2 if joined else 0)] * 2)
+
+
 def test_way_across_a_node_lies_between_its_lanes(graph):
     pieces = pieces_of(graph)
     assert pieces["A_0"].after == ["across_0"]

@@ -32,6 +32,7 @@ def test_one_who_pulls_out_must_leave_the_other_time(from_m: float) -> None:
         assert (status(made, "right_of_way") == "broken") == (first and gap < LIMITS.hazard_s)
     else:
         assert found(made, "right_of_way")[0].measured == 0.0
+        assert found(made, "right_of_way")[0].where.endswith("into the junction")
     assert status(made, "right_of_way", "V2") == ""
 
 
