@@ -19,7 +19,7 @@ def _lanes(text: str) -> set[tuple[int, int]]:
         ("V1 was traveling east in lane one of a four-lane divided roadway.", 4),
         ("V1 was traveling east in lane four of a five-lane, two-way, divided roadway.", 5),
         ("V1 was traveling east on a four-lane divided highway.", 2),
-        ("V1 was traveling east in the left lane of a six-lane, divided interstate.", 3),
+        ("V1 was traveling east in the left lane of a six-lane, divided interstate.", 6),
         ("V1 was traveling east in lane two of a four-lane divided highway.", 4),
         ("V1 was traveling east on a three-lane divided highway.", 3),
         ("V1 was traveling east on a four-lane divided road.", 2),
