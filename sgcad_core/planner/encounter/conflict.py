@@ -28,9 +28,10 @@ from sgcad_core.planner.encounter.pairing import Encounter, Stage, Ways, cannot,
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.box_angles import ASKEW
 from sgcad_core.planner.lines.crossing import implied_crossings
-from sgcad_core.planner.lines.departures import departs, departure_station, side_of
+from sgcad_core.planner.lines.departures import departs, departure_sides, departure_station, side_of
 from sgcad_core.planner.lines.told_moves import with_room
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
+from sgcad_core.planner.long_things import is_long
 from sgcad_core.planner.stationary_actors import parked_beside_m
 from sgcad_core.records.course import Courses, CourseTold
 from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact, size_m
@@ -223,4 +224,13 @@ def _facing_other(role: Role, other: Role) -> Role:
         other_road=other.actor.road,
         other_spins=bool(other.spins),
         other_lost=other.told.lost_control,
+        other_long=other.actor.record.thing and is_long(other.size),
+        other_leaves=_leaves(other),
     )
+
+
+def _leaves(role: Role) -> int:
+    """The hand on which it leaves the road, likeliest: 1 left, -1 right; 0: it stays on it."""
+    if role.actor.record.laneless or not departs(role.actor.maneuver, role.told.departs):
+        return 0
+    return departure_sides(role.course, role.place.station_m, role.told.departs or "either")[0]
