@@ -119,7 +119,7 @@ def still_leaving(role: Role, drift: Drift, ease: float) -> Drift:
 
 
 def half_gone(role: Role, drift: Drift, ease: float) -> Drift:
-    """A way off the road that is half done at the place, where it is steepest: what runs along the road is met there."""
+    """A way off the road that is half done at the place, where it is steepest: there it meets what runs along it."""
     length = shift_length_m(role, 2 * drift.left_m, ease)
     return drift._replace(left_m=2 * drift.left_m, length_m=length, end_m=drift.end_m + length / 2)
 
