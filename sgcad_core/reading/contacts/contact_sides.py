@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from sgcad_core.kinds import CHANGES
 from sgcad_core.reading.actors.people_objects import is_person
 from sgcad_core.reading.contacts.contact_records import AREAS, GROUND, ContactFacts, ContactMention
 from sgcad_core.reading.inference.inference_state import (
@@ -15,6 +16,7 @@ from sgcad_core.reading.inference.inference_state import (
     is_sideswipe,
     side_hit,
 )
+from sgcad_core.reading.motion.maneuvers import INTO_LANE_OF, INTO_LANE_OF_OTHER
 from sgcad_core.reading.text.area_phrases import Zone
 from sgcad_core.reading.text.compass import OPPOSITE_HAND, between
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
@@ -64,12 +66,24 @@ def _join(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) ->
         a, b = b, a
     if area_a is None and area_b is None and (caught := _caught_up(crash, a, b)):
         a, b, area_a, area_b = *caught, "front", "back"
+    if area_a is None and area_b is None and crash.near and _cuts_in(inferred, a, b):
+        area_a, area_b = _sideswiped(inferred, a, b)
     area_a, area_b = complete_areas(inferred, a, b, area_a, area_b)
     leads_b = area_b == "front" and area_a != "front" and not _backs_into(inferred, a, area_a)
     if leads_b or (_backs_into(inferred, b, area_b) and _standing(inferred, a)):
         a, b, area_a, area_b = b, a, area_b, area_a
     may = {mention.actor: _allowed(mention.actor_area), mention.other: _allowed(mention.other_area)}
     return ContactFacts(a, b, area_a, area_b, told, True, may[a], may[b])
+
+
+def _cuts_in(inferred: CrashInferred, a: str, b: str) -> bool:
+    """Whether just one of two that drive one way changes lanes, into that of the other one, and neither stands: they
+    come together side by side."""
+    changes = [inferred.maneuvers[v] in CHANGES for v in (a, b)]
+    along = apart(between(inferred.headings.get(a, "N"), inferred.headings.get(b, "N")), 0) <= 45
+    sources = (inferred.sources.get(f"{v} maneuver") for v in (a, b))
+    into = any(source is not None and source.rule in (INTO_LANE_OF, INTO_LANE_OF_OTHER) for source in sources)
+    return along and into and sum(changes) == 1 and not (_standing(inferred, a) or _standing(inferred, b))
 
 
 def _caught_up(crash: CrashTold, a: str, b: str) -> tuple[str, str] | None:
@@ -144,7 +158,7 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
             and mine
             and mine.count("/") == 1
             and (yours in ("front", None) or (along[me] and yours in OPPOSITE_HAND))
-            and inferred.maneuvers[me] not in ("stopped", "parked")
+            and (inferred.maneuvers[me] not in ("stopped", "parked") or _passed_by(mine, yours, turn))
         )
         flank = flank or _beside(mine, yours, turn)
         areas[me] = mine.split("/")[1] if flank and mine else end_of(mine)  # type: ignore[assignment]
@@ -153,13 +167,21 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
     return areas[mention.actor], areas[mention.other]
 
 
+def _passed_by(mine: Zone, yours: Zone | None, turn: float) -> bool:
+    """Whether the flank of the other one goes along a corner, in one direction."""
+    return turn == 0 and yours in OPPOSITE_HAND and mine.split("/")[1] == OPPOSITE_HAND[yours]
+
+
 def _beside(mine: Zone | None, yours: Zone | None, turn: float) -> bool:
     """Whether a corner touches with its flank whatever the maneuver: corners of opposite hands side by side, or a rear
     corner that an oncoming front finds."""
     hand, other = _flank_of(mine), _flank_of(yours)
     rear = end_of(mine) == "back"
     if turn == 180:
-        return rear and hand is not None and end_of(yours) == "front"
+        ends = {end_of(mine), end_of(yours)}
+        return hand is not None and (
+            (rear and end_of(yours) == "front") or (other == hand and ends == {"front", "back"})
+        )
     return turn == 0 and hand is not None and other == OPPOSITE_HAND[hand] and end_of(mine) == end_of(yours)
 
 
