@@ -16,7 +16,6 @@ from sgcad_core.reading.inference.inference_state import (
     is_sideswipe,
     side_hit,
 )
-from sgcad_core.reading.motion.maneuvers import INTO_LANE_OF, INTO_LANE_OF_OTHER
 from sgcad_core.reading.text.area_phrases import Zone
 from sgcad_core.reading.text.compass import OPPOSITE_HAND, between
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
@@ -77,20 +76,21 @@ def _join(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) ->
 
 
 def _cuts_in(inferred: CrashInferred, a: str, b: str) -> bool:
-    """Whether just one of two that drive one way changes lanes, into that of the other one, and neither stands: they
-    come together side by side."""
-    changes = [inferred.maneuvers[v] in CHANGES for v in (a, b)]
+    """Whether just one of two that drive one way changes lanes and neither stands: they come together side by side."""
+    changes = [inferred.maneuvers[v] in (*CHANGES, "merge") for v in (a, b)]
     along = apart(between(inferred.headings.get(a, "N"), inferred.headings.get(b, "N")), 0) <= 45
-    sources = (inferred.sources.get(f"{v} maneuver") for v in (a, b))
-    into = any(source is not None and source.rule in (INTO_LANE_OF, INTO_LANE_OF_OTHER) for source in sources)
-    return along and into and sum(changes) == 1 and not (_standing(inferred, a) or _standing(inferred, b))
+    return along and sum(changes) == 1 and not (_standing(inferred, a) or _standing(inferred, b))
 
 
 def _caught_up(crash: CrashTold, a: str, b: str) -> tuple[str, str] | None:
-    """Striker and struck where the codes say that one came from behind with more speed."""
+    """Striker and struck where the codes say that one came from behind with more speed, or in a near crash one is told
+    to drive ahead of the other one or behind it."""
     for struck, striker in ((a, b), (b, a)):
         if crash.motions[struck].has_cue("code:hit_from_behind"):
             return striker, struck
+        places = {word for _, _, other, word in crash.motions[struck].relations if other == striker and crash.near}
+        if places & {"ahead", "behind"}:
+            return (striker, struck) if "ahead" in places else (struck, striker)
     return None
 
 
@@ -124,7 +124,7 @@ def _sideswiped(inferred: CrashInferred, a: str, b: str) -> tuple[Area, Area]:
     """Flank to flank: left to left of oncoming vehicles, else by the lane change, else a on the left."""
     if apart(between(inferred.headings[a], inferred.headings[b]), 180) <= 45:
         return "left", "left"
-    a_goes_left = inferred.maneuvers[a] == "lane_change_left" or inferred.maneuvers[b] == "lane_change_right"
+    a_goes_left = inferred.maneuvers[a] in ("lane_change_left", "merge") or inferred.maneuvers[b] == "lane_change_right"
     return ("left", "right") if a_goes_left else ("right", "left")
 
 

@@ -76,3 +76,12 @@ def test_two_come_into_the_middle_lane_from_both_sides() -> None:
         "changes into the middle lane as well, almost side swiping the subject's vehicle."
     )
     assert lanes(near + ROAD) == (3, 1)
+
+
+def test_the_rightmost_lane_of_a_report_without_numbers_is_one_of_two() -> None:
+    text = "The AV was proceeding north in the rightmost lane. A car behind the AV struck the rear of the AV."
+    legs = layout_of_facts(read(text).roads).legs
+    assert {leg.bearing: leg.lanes_in for leg in legs}["S"] == 2
+    same = "V1 was northbound in the right lane. V2 was northbound. The front of V2 struck the back of V1."
+    numbered = layout_of_facts(read(same).roads).legs
+    assert {leg.bearing: leg.lanes_in for leg in numbered}["S"] == 1

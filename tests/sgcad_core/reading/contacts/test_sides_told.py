@@ -124,3 +124,26 @@ def test_things_of_one_kind_are_as_many_as_told() -> None:
     text = "V1 was northbound, departed the road and struck {}."
     struck = {"a tree": 1, "two trees": 2, "several small trees": 2, "five mailboxes": 3, "a tree and two poles": 3}
     assert {told: len(read(text.format(told)).crash.impacts) for told in struck} == struck
+
+
+@pytest.mark.parametrize(("text", "first"), [
+    ("Subject driver is changing into the left lane. The lead vehicle applies his brakes.", ("V1", "front", "back")),
+    ("Subject driver is changing into the left lane. A following vehicle nearly hits her.", ("V2", "front", "back")),
+    ("Subject driver is trying to merge onto the interstate. A truck next to her does not let her in. She brakes.",
+     ("V1", "left", "right")),
+])  # fmt: skip
+def test_in_a_near_crash_the_place_of_the_other_one_tells_who_comes_from_behind(
+    text: str, first: tuple[str, ...]
+) -> None:
+    contact = read(text).crash.contacts[0]
+    sides = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
+    other = "V2" if first[0] == "V1" else "V1"
+    assert (sides[first[0]], sides[other]) == first[1:]
+
+
+def test_who_starts_after_having_stopped_does_not_stand() -> None:
+    text = (
+        "Subject driver is starting to make a left turn after having stopped for a traffic signal, when a vehicle "
+        "heading in the opposite direction starts to accelerate after having stopped for the same signal."
+    )
+    assert [v.maneuver for v in read(text).crash.vehicles] == ["turn_left", "straight"]
