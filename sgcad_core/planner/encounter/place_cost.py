@@ -11,7 +11,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, line_m
-from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING
+from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING, turns_off
 from sgcad_core.planner.lines.departures import departs, in_a_mouth, on_the_road
 from sgcad_core.planner.lines.path import Path
 
@@ -50,7 +50,7 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
         penalty = penalty + _NOT_SHOWN * (way * turned < math.radians(16))
     elif maneuver == "straight":
         penalty = penalty + _NOT_SHOWN * (np.abs(turned) > math.radians(28))
-    elif maneuver == "slowing" and role.course.turn is None and not role.actor.gore:
+    elif maneuver == "slowing" and not turns_off(role.course) and not role.actor.gore:
         penalty = penalty + _SLOWED_IN_JUNCTION * _in_junctions(role, path.s_m)
     if maneuver in _DRIFTING and drift.left_m:
         penalty = penalty + 0.5 * (path.s_m < drift.end_m - 0.8 * drift.length_m)
