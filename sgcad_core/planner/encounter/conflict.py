@@ -150,10 +150,11 @@ class Conflicts:
         return told if side == told.departs else replace(told, departs=side)
 
     def _goes_on(self, actor: str, contact: Contact) -> bool:
-        """Whether an actor on wheels strikes something else after a contact."""
+        """Whether an actor on wheels strikes something else after a contact, or rolls over behind a thing."""
         told = list(self.behavior.contacts)
         later = told[told.index(contact) + 1 :] if contact in told else []
-        return self.actors[actor].record.wheeled and any(c.striker == actor for c in later)
+        rolls = self.actors[contact.struck].record.thing and self.told.get(actor, CourseTold()).rolls
+        return self.actors[actor].record.wheeled and (rolls or any(c.striker == actor for c in later))
 
     def _set_rolling(self, a: Actor, b: Actor) -> Actor:
         mover = b if a.record.thing else a
