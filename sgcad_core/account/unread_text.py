@@ -115,11 +115,16 @@ def _served(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
 
 
 def _crowd(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
-    """Queues and standing traffic, where no vehicle is drawn beside those of the first contact; and doors that touch
-    something, which no scenario has."""
+    """Queues, standing traffic and one more vehicle, where none is drawn beside those of the first contact; people who
+    are waited for; and doors that touch something, which no scenario has."""
     vehicles = [actor for actor in made.scenario.actors if actor_kind(actor.type).drives]
     if len(vehicles) <= _PAIR and (match := rule("account.crowd").search(sentence.text)):
         yield _lacks(sentence, "further", match[0].lower(), f"{match[0]!r} is named", "it is not in the scenario")
+    if made.reading.crash.unnumbered and len(vehicles) <= _PAIR:
+        for match in rule("account.another").finditer(sentence.text):
+            yield _lacks(sentence, "further", match[0].lower(), f"{match[0]!r} is named", "it is not in the scenario")
+    if not any(name[0] in "PB" for name in made.tracks) and (match := rule("account.waited_for").search(sentence.text)):
+        yield _lacks(sentence, "further", match["who"].lower(), f"{match[0]!r} is told", "none is in the scenario")
     if match := rule("account.door").search(sentence.text):
         yield _lacks(sentence, "struck", "door", f"{match[0]!r} in a contact", "no door is drawn open")
 
