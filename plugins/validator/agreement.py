@@ -18,7 +18,14 @@ from sgcad_core.case.records import (
     sizes_of,
 )
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.execution.contact import CLEARANCE_TOLERANCE_M, avoided, closest_approach, first_contact, realised
+from sgcad_core.execution.contact import (
+    CLEARANCE_TOLERANCE_M,
+    UNTOLD_CLEARANCE_M,
+    avoided,
+    closest_approach,
+    first_contact,
+    realised,
+)
 from sgcad_core.execution.starts import START_M, off_lane
 from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.agreement import network_disagreements
@@ -81,7 +88,9 @@ class Agreement(Validator):
             remedy = "change the evasion, lanes or maneuvers so that nobody touches anybody"
             yield _finding("a near crash ends in a contact", "near_crash", _seen(seen), remedy, self.unrealised)
         elif closest is not None and not avoided(near, seen, closest):
-            what = f"the closest approach is not the declared {near.closest_m:g} m (within {CLEARANCE_TOLERANCE_M:g} m)"
+            told = f"the declared {near.closest_m:g} m (within {CLEARANCE_TOLERANCE_M:g} m)"
+            least, most = UNTOLD_CLEARANCE_M
+            what = f"the closest approach is not {told if near.clearance_m else f'within {least:g} to {most:g} m'}"
             value = f"{closest.clearance_m:.2f} m at {closest.t_s:.2f} s"
             remedy = "change roads, maneuvers, the conflict or the evasion so that the two come into conflict"
             yield _finding(what, "near_crash.clearance_m", value, remedy, self.unrealised)

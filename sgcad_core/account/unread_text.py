@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
-from sgcad_core.kinds import DRIVEWAY, JUNCTIONS, PARKING_LOT, ROUNDABOUT
+from sgcad_core.kinds import DRIVEWAY, JUNCTIONS, PARKING_LOT, ROUNDABOUT, actor_kind
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.text.normalise import NUMBERS, Sentence
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES, is_impact
@@ -31,6 +31,9 @@ _SATISFIED_BY: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 """Act in the text -> prefixes of the maneuvers that show it; other acts occur within many maneuvers."""
 
+_PAIR = 2
+"""Vehicles of a crash that has no further ones."""
+
 
 def unread_items(made: ExecutedCase) -> Iterator[Item]:
     """Lacking items of the narrative's sentences, each thing once."""
@@ -47,6 +50,7 @@ def _of_sentence(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     yield from _called(made, sentence)
     yield from _further(made, sentence)
     yield from _served(made, sentence)
+    yield from _crowd(made, sentence)
     yield from _struck(made, sentence)
     yield from _things(made, sentence)
     yield from _places(made, sentence)
@@ -108,6 +112,21 @@ def _served(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
             words = match["kind"].lower()
             if not any(kind in words for kind in kinds - {"car"}):
                 yield _lacks(sentence, "further", words, f"{words!r} is named", "it is not in the scenario")
+
+
+def _crowd(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
+    """Queues, standing traffic and one more vehicle, where none is drawn beside those of the first contact; people who
+    are waited for; and doors that touch something, which no scenario has."""
+    vehicles = [actor for actor in made.scenario.actors if actor_kind(actor.type).drives]
+    if len(vehicles) <= _PAIR and (match := rule("account.crowd").search(sentence.text)):
+        yield _lacks(sentence, "further", match[0].lower(), f"{match[0]!r} is named", "it is not in the scenario")
+    if made.reading.crash.unnumbered and len(vehicles) <= _PAIR:
+        for match in rule("account.another").finditer(sentence.text):
+            yield _lacks(sentence, "further", match[0].lower(), f"{match[0]!r} is named", "it is not in the scenario")
+    if not any(name[0] in "PB" for name in made.tracks) and (match := rule("account.waited_for").search(sentence.text)):
+        yield _lacks(sentence, "further", match["who"].lower(), f"{match[0]!r} is told", "none is in the scenario")
+    if match := rule("account.door").search(sentence.text):
+        yield _lacks(sentence, "struck", "door", f"{match[0]!r} in a contact", "no door is drawn open")
 
 
 def _struck(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:

@@ -20,6 +20,8 @@ STILL_M = 1e-3
 """An actor that stays within this distance of its start has not moved."""
 CLEARANCE_TOLERANCE_M = 0.05
 """A near crash is as declared if its closest approach is off by no more."""
+UNTOLD_CLEARANCE_M = (0.2, 1.5)
+"""How near the two come in a near crash whose report does not tell it: "nearly hit" is less than the width of a car."""
 
 
 def first_contact(trajectories: Sequence[Trajectory], sizes: Mapping[str, Size]) -> ObservedContact | None:
@@ -69,7 +71,9 @@ def avoided(near: NearCrash, contact: ObservedContact | None, closest: ClosestAp
     """Whether a near crash is as declared: no contact, and the declared clearance of the pair."""
     if contact is not None or closest is None:
         return False
-    return abs(closest.clearance_m - near.closest_m) <= CLEARANCE_TOLERANCE_M
+    if near.clearance_m is None:
+        return UNTOLD_CLEARANCE_M[0] <= closest.clearance_m <= UNTOLD_CLEARANCE_M[1]
+    return abs(closest.clearance_m - near.clearance_m) <= CLEARANCE_TOLERANCE_M
 
 
 def observe(a: Trajectory, b: Trajectory, k: int, sizes: Mapping[str, Size]) -> ObservedContact:

@@ -68,6 +68,10 @@ class Role:
     """The evasion that the report states."""
     goes_on: bool = False
     """Whether it strikes something else after this contact."""
+    other_long: bool = False
+    """Whether the other one is a thing that runs along the road."""
+    other_leaves: int = 0
+    """The hand on which the other one leaves the road: 1 left, -1 right; 0: it stays on it."""
     leaves_lanes: bool = False
     """Whether it may drive out of its lanes untold: where the pair meets in no other way."""
 

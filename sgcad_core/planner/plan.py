@@ -222,9 +222,10 @@ class _Cast:
 
     def _let_through(self, scene: Scene, first: Contact) -> None:
         """Lets a thing that is struck first give way where it is a loose piece, or its vehicle strikes something else
-        after it."""
-        track, goes_on = scene.tracks[first.struck], any(first.striker in pair_of(c) for c in self.contacts[1:])
-        thing = self.actors[first.struck]
+        after it or rolls over."""
+        track, thing = scene.tracks[first.struck], self.actors[first.struck]
+        rolls = self.told.get(first.striker, CourseTold()).rolls
+        goes_on = rolls or any(first.striker in pair_of(c) for c in self.contacts[1:])
         if track.motion.fixed and (goes_on or thing.loose):
             track.let_pass(glances=is_passed(thing, first.striker_area), stays=thing.firm)
 

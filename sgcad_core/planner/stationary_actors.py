@@ -13,10 +13,14 @@ from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, Twist, facing
 from sgcad_core.planner.lines.box_angles import ASKEW, aiming
 from sgcad_core.planner.lines.path import Path
+from sgcad_core.planner.long_things import hand_of_side, is_long, meeting_angle, turned_to
 from sgcad_core.planner.motion import Motion
 
 _IN_LANE = 0.9
 """Cost of standing in the lane although there is a place beside it: more than that of a way out of the lane to it."""
+
+_ACROSS = 0.8
+"""Cost of a long thing that stands across the way, over that of one along it."""
 
 
 def stand_offs(role: Role) -> list[Drift]:
@@ -73,9 +77,20 @@ def beside_the_way(role: Role) -> list[Drift]:
 def any_angle(role: Role) -> list[Twist]:
     """An object has no heading of its own: its wanted side is turned to the actor that comes, be it tail first."""
     side = facing(role.side) if role.side else 0.0
+    along = _along_the_road(role, side) if is_long(role.size) else []
     bearings = ((180, 0.0), (135, 0.05), (-135, 0.05), (90, 0.1), (-90, 0.1))
     from_behind = 180 if role.other_side == "back" else 0
-    return [Twist(cost, math.radians(degrees - from_behind) - side) for degrees, cost in bearings]
+    across = [Twist(cost + _ACROSS * bool(along), math.radians(d - from_behind) - side) for d, cost in bearings]
+    return [*along, *across]
+
+
+def _along_the_road(role: Role, side_rad: float) -> list[Twist]:
+    """A long thing runs along the road, on the hand of the side that meets it; none where tail first is told."""
+    if role.other_side == "back":
+        return []
+    angle = meeting_angle(role.other_side)
+    hands = hand_of_side(role.other_side, role.other_leaves)
+    return [Twist(0.05 * rank, turned_to(hand, angle) - side_rad) for rank, hand in enumerate(hands)]
 
 
 def steps_aside() -> list[Drift]:

@@ -162,6 +162,8 @@ def _lane_before(motion: VehicleMotion, maneuver: Maneuver) -> int | None:
     """The lane beside the one into which it changes, where none is told: 1 at the right curb, -1 the leftmost."""
     side = CHANGES.get(maneuver, 0)
     told = {"right": 1, "left": -1}.get(motion.to_lane, 0) if isinstance(motion.to_lane, str) else motion.to_lane
+    if motion.to_lane == "middle" and side and not motion.lane_word:
+        return 1 if side > 0 else -1
     if not side or not told or motion.lane_word or told - side == 0:
         return None
     return told - side

@@ -189,7 +189,7 @@ class Actor(Spec):
     maneuver: Maneuver
     speed_mph: SpeedMph | None = None
     length_m: Annotated[float, Field(gt=0.1, le=30)] | None = None
-    width_m: Annotated[float, Field(gt=0.1, le=5)] | None = None
+    width_m: Annotated[float, Field(gt=0.1, le=20, json_schema_extra={TRAINED: {"maximum": 5}})] | None = None
     gore: bool = added(False, "in the gore of a ramp: what stands there, or who crosses it into exit_road")
     firm: bool = added(False, "a thing that stays where it stands: what drives on has glanced off it")
     loose: bool = added(False, "a piece that lies in the way: what strikes it drives on over it")

@@ -18,6 +18,7 @@ from sgcad_core.planner.actor_plan import is_beside
 from sgcad_core.planner.aftermath.second_contact import first_sides
 from sgcad_core.planner.aftermath.told_order import ToldOrder, touched
 from sgcad_core.planner.lines.path import Path
+from sgcad_core.planner.long_things import beside, hand_of_side, is_long, meeting_angle, turned_to
 from sgcad_core.planner.motion import STEP_S, Motion, stand
 from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.records.specs import Actor, Area, size_m
@@ -197,6 +198,10 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
         outward = (by[0] * math.cos(out) + by[1] * math.sin(out)) / STEP_S
         if outward < _OUTWARD_MPS:
             continue
+        if is_long(size) and side != "back":
+            rank = 0 if side == strike.side or strike.side is None else 1
+            yield from ((rank, pose) for pose in _along(track, k, side, size))
+            continue
         if strike.glances and number % 2:
             continue
         depth, width = (max(size), min(size)) if strike.glances else size
@@ -210,6 +215,14 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
         yield rank, np.array([
             x + reach * math.cos(out) - left * math.sin(out), y + reach * math.sin(out) + left * math.cos(out), turned,
         ])  # fmt: skip
+
+
+def _along(track: Track, k: int, side: Area, size: Size) -> Iterator[Floats]:
+    """The poses of a long thing that runs along the road, before a side of the box on one hand or the other."""
+    pose = track.poses[k]
+    for hand in hand_of_side(side, 0):
+        heading = float(pose[2]) + turned_to(hand, meeting_angle(side))
+        yield beside(pose, track.size, size, heading, _DEPTH_M)
 
 
 def _is_free(scene: Scene, strike: Strike, pose: Floats, size: Size, until: int) -> bool:

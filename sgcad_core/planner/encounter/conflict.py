@@ -28,9 +28,10 @@ from sgcad_core.planner.encounter.pairing import Encounter, Stage, Ways, cannot,
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.box_angles import ASKEW
 from sgcad_core.planner.lines.crossing import implied_crossings
-from sgcad_core.planner.lines.departures import departs, departure_station, side_of
+from sgcad_core.planner.lines.departures import departs, departure_sides, departure_station, side_of
 from sgcad_core.planner.lines.told_moves import with_room
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
+from sgcad_core.planner.long_things import is_long
 from sgcad_core.planner.stationary_actors import parked_beside_m
 from sgcad_core.records.course import Courses, CourseTold
 from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact, size_m
@@ -149,10 +150,11 @@ class Conflicts:
         return told if side == told.departs else replace(told, departs=side)
 
     def _goes_on(self, actor: str, contact: Contact) -> bool:
-        """Whether an actor on wheels strikes something else after a contact."""
+        """Whether an actor on wheels strikes something else after a contact, or rolls over behind a thing."""
         told = list(self.behavior.contacts)
         later = told[told.index(contact) + 1 :] if contact in told else []
-        return self.actors[actor].record.wheeled and any(c.striker == actor for c in later)
+        rolls = self.actors[contact.struck].record.thing and self.told.get(actor, CourseTold()).rolls
+        return self.actors[actor].record.wheeled and (rolls or any(c.striker == actor for c in later))
 
     def _set_rolling(self, a: Actor, b: Actor) -> Actor:
         mover = b if a.record.thing else a
@@ -223,4 +225,13 @@ def _facing_other(role: Role, other: Role) -> Role:
         other_road=other.actor.road,
         other_spins=bool(other.spins),
         other_lost=other.told.lost_control,
+        other_long=other.actor.record.thing and is_long(other.size),
+        other_leaves=_leaves(other),
     )
+
+
+def _leaves(role: Role) -> int:
+    """The hand on which it leaves the road, likeliest: 1 left, -1 right; 0: it stays on it."""
+    if role.actor.record.laneless or not departs(role.actor.maneuver, role.told.departs):
+        return 0
+    return departure_sides(role.course, role.place.station_m, role.told.departs or "either")[0]

@@ -22,6 +22,7 @@ from sgcad_core.planner.lines.departures import (
     aside_m,
     departs,
     departure_sides,
+    half_gone,
     room_before_m,
     shift_length_m,
     still_leaving,
@@ -144,7 +145,7 @@ def _departures(role: Role, *, fine: bool) -> list[Drift]:
         wide = aside_m(role.course, side)
         for share, cost, ease in _eased(shares):
             drift = _drift(role, wide * share, cost + _OTHER_SIDE * rank, ease)
-            found.append(still_leaving(role, drift, ease))
+            found.append(half_gone(role, drift, ease) if role.other_long else still_leaving(role, drift, ease))
     if role.actor.maneuver in TURNING:
         found = [drift._replace(length_m=min(drift.length_m, _OFF_BEHIND_TURN_M)) for drift in found]
     return sorted([*found, Drift(_STAYS_ON_ROAD)], key=lambda drift: drift.cost)

@@ -24,6 +24,8 @@ _MID_BLOCK: frozenset[Maneuver] = frozenset({
 _BEFORE_JUNCTION_M = 22.0
 _ALONG_TAPER = 0.55
 """Share of a taper that is left at the lane change before the closed lane."""
+_BENDS_RAD = math.radians(30.0)
+"""From a change of heading on at a junction a course turns off there."""
 _GRID_M = 2.0
 _REACH_M = 25.0
 STOP_LINE_M = 1.5
@@ -109,7 +111,17 @@ def _queue(a: Actor, b: Actor, course_a: Course, course_b: Course) -> bool:
     same = (
         a.road == b.road and a.direction == b.direction and not (_goes_around(a, course_a) or _goes_around(b, course_b))
     )
+    if "slowing" in (a.maneuver, b.maneuver):
+        return same and not any(map(turns_off, (course_a, course_b)))
     return same and course_a.turn is None and course_b.turn is None
+
+
+def turns_off(course: Course) -> bool:
+    """Whether a course bends at its junction; one straight on has a turn of its own, which is none."""
+    if course.turn is None:
+        return False
+    entry, exit_ = course.path.poses([course.turn.entry_m, course.turn.exit_m])[:, 2]
+    return abs(math.remainder(float(exit_ - entry), 2 * math.pi)) > _BENDS_RAD
 
 
 def _goes_around(actor: Actor, course: Course) -> bool:

@@ -28,7 +28,7 @@ from sgcad_core.planner.actor_plan import (
     usual_speed,
 )
 from sgcad_core.planner.encounter.maneuver_choices import FROM_OTHER_LANE, OTHER_LANE, OTHER_LANE_COST, drifts, homing
-from sgcad_core.planner.encounter.meeting_place import TURNING
+from sgcad_core.planner.encounter.meeting_place import TURNING, turns_off
 from sgcad_core.planner.encounter.out_of_lanes import OUT, out_of_lanes, stands_out_of_lanes, starts_beside
 from sgcad_core.planner.encounter.pacing_choices import pacings
 from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, cost_outside, in_junction, misfit, waiting_zone
@@ -59,6 +59,10 @@ _UNBRAKED = 0.3
 """Cost of a contact before the stated braking is visible."""
 _UNDER_WAY_M = 2.5
 """Distance after a standing start from which the vehicle counts as moving."""
+
+_SLOWS_M, _RIGHT_BEFORE_M = (3.0, 15.0), 12.0
+"""Distance before its place at which a vehicle begins to slow; before one right before a junction, where it is slow
+then."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -284,6 +288,13 @@ def _pace(role: Role, option: Option) -> Pace:
     pace = Pace(speed, curve, starts_at_m(role, pacing), grip_mps2=role.grip_mps2, hard=hard)
     slowed = 0.35 * speed if role.actor.maneuver == "slowing" else BRAKED_TO * speed
     if role.actor.maneuver == "slowing" or role.told.brakes:
-        at = role.place.station_m - (3.0 if role.actor.maneuver == "slowing" else role.size[0] / 2 + 1.0)
+        before_m = _SLOWS_M[_before_junction(role)] if role.actor.maneuver == "slowing" else role.size[0] / 2 + 1.0
+        at = role.place.station_m - before_m
         return replace(pace, slow_at_m=at, slow_mps=max(slowed, 1.5), brakes=role.told.brakes)
     return pace
+
+
+def _before_junction(role: Role) -> bool:
+    """Whether its place lies right before a junction that it goes straight through."""
+    entries = (p.entry_m - role.place.station_m for p in role.course.passages if p.is_junction)
+    return not turns_off(role.course) and any(0.0 < away < _RIGHT_BEFORE_M for away in entries)

@@ -11,7 +11,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, line_m
-from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING
+from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING, turns_off
 from sgcad_core.planner.lines.departures import departs, in_a_mouth, on_the_road
 from sgcad_core.planner.lines.path import Path
 
@@ -30,6 +30,8 @@ _IN_MOUTH = 0.6
 """Cost of an encounter beside the road where another road joins, for one that leaves the road."""
 _IN_JUNCTION = 0.8
 """Cost of standing in a junction where a stop is told: drivers wait before it."""
+_SLOWED_IN_JUNCTION = 0.4
+"""Cost of an encounter in a junction for one that goes straight on and is told to slow: for what waits before it."""
 _UNSTEERED, _STEERED_M = 0.3, 0.4
 """Cost of a stated evasion of which less is visible before the contact."""
 
@@ -48,6 +50,8 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
         penalty = penalty + _NOT_SHOWN * (way * turned < math.radians(16))
     elif maneuver == "straight":
         penalty = penalty + _NOT_SHOWN * (np.abs(turned) > math.radians(28))
+    elif maneuver == "slowing" and not turns_off(role.course) and not role.actor.gore:
+        penalty = penalty + _SLOWED_IN_JUNCTION * _in_junctions(role, path.s_m)
     if maneuver in _DRIFTING and drift.left_m:
         penalty = penalty + 0.5 * (path.s_m < drift.end_m - 0.8 * drift.length_m)
     if maneuver in ACROSS_LANES and drift.left_m:
@@ -79,11 +83,17 @@ def in_junction(role: Role, s_m: Floats) -> Floats:
     cost: Floats = np.zeros(len(s_m))
     if role.actor.maneuver != "stopped" or role.actor.gore:
         return cost
+    return cost + _IN_JUNCTION * _in_junctions(role, s_m)
+
+
+def _in_junctions(role: Role, s_m: Floats) -> Floats:
+    """(n,) 1 where its box is in a junction of three roads or more that is no roundabout, else 0."""
+    found: Floats = np.zeros(len(s_m))
     half = role.size[0] / 2
     for crossed in role.course.passages:
         if crossed.is_junction and not crossed.around:
-            cost += _IN_JUNCTION * ((s_m > crossed.entry_m - half) & (s_m < crossed.exit_m + half))
-    return cost
+            found += (s_m > crossed.entry_m - half) & (s_m < crossed.exit_m + half)
+    return found
 
 
 def waiting_zone(role: Role) -> tuple[float, float]:

@@ -118,6 +118,12 @@ def still_leaving(role: Role, drift: Drift, ease: float) -> Drift:
     return drift._replace(left_m=2 * drift.left_m, length_m=length, end_m=drift.end_m + length / 2)
 
 
+def half_gone(role: Role, drift: Drift, ease: float) -> Drift:
+    """A way off the road that is half done at the place, where it is steepest: there it meets what runs along it."""
+    length = shift_length_m(role, 2 * drift.left_m, ease)
+    return drift._replace(left_m=2 * drift.left_m, length_m=length, end_m=drift.end_m + length / 2)
+
+
 def way_off_m(role: Role) -> float:
     """The way along its road that a departure takes on a slippery surface, metres; 0 where there is room for it or the
     road is not left."""

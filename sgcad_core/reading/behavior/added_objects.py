@@ -19,10 +19,13 @@ from sgcad_core.records.specs import Actor, ActorKind, Contact, RoadSpec
 
 _SIZE_M: dict[str, tuple[float, float]] = {
     "pole": (0.4, 0.4), "tree": (0.5, 0.5), "post": (0.3, 0.3), "sign": (0.3, 0.8), "signal": (0.4, 0.4),
-    "mailbox": (0.4, 0.4), "hydrant": (0.4, 0.4), "fence": (0.3, 4.0), "guardrail": (0.4, 5.0), "rail": (0.4, 5.0),
-    "wall": (0.5, 5.0), "barrier": (0.6, 5.0), "embankment": (1.5, 5.0), "building": (5.0, 5.0), "house": (5.0, 5.0),
-    "box": (1.0, 1.0), "bush": (1.0, 1.0), "rock": (1.0, 1.0), "boulder": (1.5, 1.5), "railing": (0.3, 5.0),
-    "snowbank": (1.5, 4.0), "dumpster": (1.8, 2.0), "bridge": (0.8, 5.0), "abutment": (1.0, 3.0),
+    "mailbox": (0.4, 0.4), "hydrant": (0.4, 0.4), "fence": (0.3, 10.0), "guardrail": (0.4, 14.0), "rail": (0.4, 14.0),
+    "wall": (0.5, 12.0), "barrier": (0.6, 14.0), "embankment": (1.5, 10.0), "building": (5.0, 5.0),
+    "house": (5.0, 5.0), "box": (1.0, 1.0), "bush": (1.0, 1.0), "rock": (1.0, 1.0), "boulder": (1.5, 1.5),
+    "railing": (0.3, 10.0), "snowbank": (1.5, 8.0), "dumpster": (1.8, 2.0), "bridge": (0.8, 12.0),
+    "abutment": (1.0, 3.0), "ditch": (2.0, 12.0), "culvert": (1.0, 2.4), "berm": (1.5, 10.0), "hedge": (1.0, 6.0),
+    "cable": (0.3, 14.0), "shrub": (1.0, 1.0), "trunk": (0.6, 0.6), "stump": (0.5, 0.5), "column": (0.8, 0.8),
+    "pillar": (0.8, 0.8), "bollard": (0.2, 0.2), "garage": (5.0, 5.0), "shed": (3.0, 3.0),
 }  # fmt: skip
 """Depth and width of things as a car meets them, metres; others are posts."""
 _FIRM = frozenset((
@@ -66,8 +69,12 @@ def with_roadside(
 
 
 def _held(actor: Actor, word: str) -> Actor:
-    """The actor, firm where it is a thing that does not give way, loose where it is a piece that does at once."""
+    """The actor, as large as things of its name are, firm where it does not give way, loose where it does at once."""
     named = word.lower().rpartition(" ")[2]
+    thing = actor.record.thing and not actor.length_m
+    size = _SIZE_M.get(named) or _SIZE_M.get(named.rstrip("s"))
+    if thing and size:
+        actor = actor.model_copy(update={"length_m": size[0], "width_m": size[1]})
     kinds = {name for name, words in (("firm", _FIRM), ("loose", _LOOSE)) if {named, named.rstrip("s")} & words}
     return actor.model_copy(update=dict.fromkeys(kinds, True)) if actor.record.thing and kinds else actor
 

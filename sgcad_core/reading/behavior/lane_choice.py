@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from sgcad_core.kinds import CHANGES
 from sgcad_core.reading.behavior.exit_assignment import Placed
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
@@ -131,13 +133,24 @@ def _stated_lane(v: VehicleFacts, count: int, turns: tuple[Turn, ...]) -> int | 
 
 
 def _leader(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> VehicleFacts | None:
-    """The one it runs into (or that runs into it) from behind, on the same way: they share a lane."""
+    """One that it runs into (or that runs into it) from behind, on the same way: they share a lane. Of a row the first
+    one whose lane is told, else its neighbor."""
+    row, next_ones = [v], list(_in_row(v, placed, facts))
+    for other in next_ones:
+        if other not in row:
+            row.append(other)
+            next_ones += _in_row(other, placed, facts)
+    others = row[1:]
+    return next((other for other in others if other.lane or other.lane_word), next(iter(others), None))
+
+
+def _in_row(v: VehicleFacts, placed: dict[str, Placed], facts: CrashFacts) -> Iterator[VehicleFacts]:
+    """Those that touch it with a back, on the same way, in the order of the contacts."""
     for c in facts.contacts:
         if v.id in (c.striker, c.struck) and "back" in (c.striker_area, c.struck_area):
             other = facts.vehicle(c.struck if c.striker == v.id else c.striker)
             if other and other.id in placed and placed[other.id].way == placed[v.id].way:
-                return other
-    return None
+                yield other
 
 
 def _by_turn(v: VehicleFacts, count: int, turns: tuple[Turn, ...]) -> int | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from sgcad_core.kinds import CHANGES
 from sgcad_core.reading.actors.people_objects import is_person
 from sgcad_core.reading.contacts.contact_records import AREAS, GROUND, ContactFacts, ContactMention
 from sgcad_core.reading.inference.inference_state import (
@@ -64,6 +65,8 @@ def _join(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) ->
         a, b = b, a
     if area_a is None and area_b is None and (caught := _caught_up(crash, a, b)):
         a, b, area_a, area_b = *caught, "front", "back"
+    if area_a is None and area_b is None and crash.near and _cuts_in(inferred, a, b):
+        area_a, area_b = _sideswiped(inferred, a, b)
     area_a, area_b = complete_areas(inferred, a, b, area_a, area_b)
     leads_b = area_b == "front" and area_a != "front" and not _backs_into(inferred, a, area_a)
     if leads_b or (_backs_into(inferred, b, area_b) and _standing(inferred, a)):
@@ -72,11 +75,22 @@ def _join(crash: CrashTold, inferred: CrashInferred, mention: ContactMention) ->
     return ContactFacts(a, b, area_a, area_b, told, True, may[a], may[b])
 
 
+def _cuts_in(inferred: CrashInferred, a: str, b: str) -> bool:
+    """Whether just one of two that drive one way changes lanes and neither stands: they come together side by side."""
+    changes = [inferred.maneuvers[v] in (*CHANGES, "merge") for v in (a, b)]
+    along = apart(between(inferred.headings.get(a, "N"), inferred.headings.get(b, "N")), 0) <= 45
+    return along and sum(changes) == 1 and not (_standing(inferred, a) or _standing(inferred, b))
+
+
 def _caught_up(crash: CrashTold, a: str, b: str) -> tuple[str, str] | None:
-    """Striker and struck where the codes say that one came from behind with more speed."""
+    """Striker and struck where the codes say that one came from behind with more speed, or in a near crash one is told
+    to drive ahead of the other one or behind it."""
     for struck, striker in ((a, b), (b, a)):
         if crash.motions[struck].has_cue("code:hit_from_behind"):
             return striker, struck
+        places = {word for _, _, other, word in crash.motions[struck].relations if other == striker and crash.near}
+        if places & {"ahead", "behind"}:
+            return (striker, struck) if "ahead" in places else (struck, striker)
     return None
 
 
@@ -110,7 +124,7 @@ def _sideswiped(inferred: CrashInferred, a: str, b: str) -> tuple[Area, Area]:
     """Flank to flank: left to left of oncoming vehicles, else by the lane change, else a on the left."""
     if apart(between(inferred.headings[a], inferred.headings[b]), 180) <= 45:
         return "left", "left"
-    a_goes_left = inferred.maneuvers[a] == "lane_change_left" or inferred.maneuvers[b] == "lane_change_right"
+    a_goes_left = inferred.maneuvers[a] in ("lane_change_left", "merge") or inferred.maneuvers[b] == "lane_change_right"
     return ("left", "right") if a_goes_left else ("right", "left")
 
 
@@ -144,7 +158,7 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
             and mine
             and mine.count("/") == 1
             and (yours in ("front", None) or (along[me] and yours in OPPOSITE_HAND))
-            and inferred.maneuvers[me] not in ("stopped", "parked")
+            and (inferred.maneuvers[me] not in ("stopped", "parked") or _passed_by(mine, yours, turn))
         )
         flank = flank or _beside(mine, yours, turn)
         areas[me] = mine.split("/")[1] if flank and mine else end_of(mine)  # type: ignore[assignment]
@@ -153,13 +167,21 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
     return areas[mention.actor], areas[mention.other]
 
 
+def _passed_by(mine: Zone, yours: Zone | None, turn: float) -> bool:
+    """Whether the flank of the other one goes along a corner, in one direction."""
+    return turn == 0 and yours in OPPOSITE_HAND and mine.split("/")[1] == OPPOSITE_HAND[yours]
+
+
 def _beside(mine: Zone | None, yours: Zone | None, turn: float) -> bool:
     """Whether a corner touches with its flank whatever the maneuver: corners of opposite hands side by side, or a rear
     corner that an oncoming front finds."""
     hand, other = _flank_of(mine), _flank_of(yours)
     rear = end_of(mine) == "back"
     if turn == 180:
-        return rear and hand is not None and end_of(yours) == "front"
+        ends = {end_of(mine), end_of(yours)}
+        return hand is not None and (
+            (rear and end_of(yours) == "front") or (other == hand and ends == {"front", "back"})
+        )
     return turn == 0 and hand is not None and other == OPPOSITE_HAND[hand] and end_of(mine) == end_of(yours)
 
 

@@ -191,11 +191,11 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
     if rolled:
         one.add("rolls", True, Source(segment.number, rolled[0], "course_rest.rolled"))
         _read_roll(one, segment, text)
-    lies = clause or (text if rolled else "")
-    for wording in of_role("attitude"):
-        if m := wording.search(lies):
-            one.add_rest("attitude", wording.yields["attitude"], Source(segment.number, m[0], wording.id))
-            break
+    lies = (clause, text) if rolled else (clause,)
+    told = ((wording, wording.search(part)) for part in lies if part for wording in of_role("attitude"))
+    for wording, lying in ((wording, lying) for wording, lying in told if lying):
+        one.add_rest("attitude", wording.yields["attitude"], Source(segment.number, lying[0], wording.id))
+        break
     if clause is not None and not rule("course_rest.unknown").search(clause):
         _read_facing(one, segment, clause)
         if m := rule("course_rest.against").search(clause):

@@ -18,12 +18,15 @@ from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.area_phrases import area_of, plain
+from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.reading.text.sentence_roles import Role
 from sgcad_core.records.course import ImpactTold
 from sgcad_core.records.specs import Area
 
 _SLACK = 12
 """Characters by which a word may stand earlier in a sentence's one form than in the sentence."""
+MOST_OF_A_KIND = 3
+"""Things of one kind in one clause that are drawn at most."""
 _RETOLD: tuple[Role, ...] = ("interview", "injury")
 
 
@@ -154,7 +157,19 @@ def _things(segment: Segment) -> Iterator[ImpactRead]:
         for thing in _listed(segment.text, m):
             end = thing.end()
             if thing["thing"] not in GROUND:
-                yield from (_hit(segment, m, thing, vehicle) for vehicle in segment.subjects)
+                hits = [_hit(segment, m, thing, vehicle) for vehicle in segment.subjects]
+                yield from hits * _count(segment.text, m, thing)
+
+
+def _count(text: str, verb: re.Match[str], thing: re.Match[str]) -> int:
+    """How many things of a kind are hit: as told up to MOST_OF_A_KIND; two where several are told without a number."""
+    begins = verb.start() if thing is verb else thing.start()
+    end = thing.end()
+    told = rule("course_impacts.counted").search(text[begins : end + text[end : end + 1].isalpha()])
+    if told is None:
+        return 1
+    word = told["count"].lower()
+    return min(int(word) if word.isdigit() else NUMBERS.get(word, 2), MOST_OF_A_KIND)
 
 
 def _listed(text: str, first: re.Match[str]) -> Iterator[re.Match[str]]:

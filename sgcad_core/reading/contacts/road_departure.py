@@ -66,7 +66,8 @@ class DepartureReader:
             self.found = self.lean = None
             return None
         if kind == "departs":
-            side = _side(text, m) or (self.found.side if self.found else self.lean) or "either"
+            usual: DepartureSide = "right" if rule("departures.pulls_over").search(text[: m.start()]) else "either"
+            side = _side(text, m) or (self.found.side if self.found else self.lean) or usual
             self.found = Departure(side, m[0], name)
             return side
         self.lean = dict(_LEANS).get(name) or _HANDS[m["hand"].lower()]

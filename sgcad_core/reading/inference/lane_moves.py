@@ -5,6 +5,7 @@ Knows what was read and is settled so far; no text but the words of a cue.
 
 from __future__ import annotations
 
+from sgcad_core.kinds import CHANGES
 from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
 from sgcad_core.reading.language import rule
@@ -12,6 +13,9 @@ from sgcad_core.reading.motion.maneuvers import INTO_LANE_OF, INTO_LANE_OF_OTHER
 from sgcad_core.reading.motion.motion_record import VehicleMotion
 from sgcad_core.reading.text.compass import against
 from sgcad_core.records.course import Hand
+
+_FROM_RIGHT = {"right": 0, "middle": 1, "left": 2}
+"""Lanes by their words, from the right curb."""
 
 
 def over_centerline(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
@@ -30,6 +34,9 @@ def change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactM
     """Directs a lane change without a told side: towards the flank of the contact, away from a told lane."""
     for v in crash.roster.ids:
         source = inferred.sources.get(f"{v} maneuver")
+        if inferred.maneuvers[v] in CHANGES and (hand := _hand_between(crash.motions[v])):
+            inferred.maneuvers[v] = "lane_change_left" if hand == "left" else "lane_change_right"
+            continue
         if (
             inferred.maneuvers[v] != "lane_change_left"
             or v in inferred.told_maneuvers
@@ -60,6 +67,14 @@ def passing_by(crash: CrashTold, inferred: CrashInferred) -> None:
         if passes and told and against(inferred.headings[v], inferred.headings[other]):
             inferred.maneuvers[v] = "straight"
             inferred.told_maneuvers.discard(v)
+
+
+def _hand_between(motion: VehicleMotion) -> Hand | None:
+    """The hand on which the lane lies into which it changes, by the words of both lanes; None where one is open."""
+    start, end = _FROM_RIGHT.get(str(motion.lane_word)), _FROM_RIGHT.get(str(motion.to_lane))
+    if start is None or end is None or start == end:
+        return None
+    return "left" if end > start else "right"
 
 
 def _told_hand(motion: VehicleMotion, words: str) -> Hand | None:

@@ -118,6 +118,8 @@ def _needs(crash: CrashFacts) -> Iterator[_Need]:
         elif v.lane or word in ("left", "middle"):
             lane = f"lane {abs(v.lane)} from the {'right' if v.lane > 0 else 'left'}" if v.lane else f"the {word} lane"
             yield _Need(v.heading, min(_own(v), MOST), by_word=word == "left", why=f"{v.id} is in {lane}")
+        elif word == "right" and crash.unnumbered:  # numbered reports say so of the one lane of a two-lane road
+            yield _Need(v.heading, 2, by_word=True, why=f"{v.id} is in the right lane")
 
 
 # ------------------------------------------------------------------ the layout

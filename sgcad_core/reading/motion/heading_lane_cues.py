@@ -51,6 +51,7 @@ def read_heading(motion: VehicleMotion, text: str, weight: int) -> None:
         rule("headings.following"),
         rule("headings.on_course"),
         rule("headings.on_bound"),
+        rule("headings.in_bound_lane"),
     ):
         for m in by.finditer(text):
             _note_heading(motion, m.group("dir"), weight, by.id)

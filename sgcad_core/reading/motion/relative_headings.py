@@ -23,6 +23,9 @@ from sgcad_core.records.specs import Area
 
 QUARTERS = (0, 90, 180, 270)
 
+_TOLD, _IN_LINE = 0.6, 1.0
+"""Shares of the weight of a told relation; one behind the other drive one way whatever touches."""
+
 
 def relative(crash: CrashTold, inferred: CrashInferred, a: str, b: str, pairs: list[ContactMention]) -> int:
     """Most plausible heading of b minus that of a, clockwise quarters, by adding up evidence."""
@@ -58,7 +61,7 @@ def _add_relations(score: dict[int, float], crash: CrashTold, a: str, b: str) ->
         for weight, relation, other, words in crash.motions[me].relations:
             if other == you and not (words == "behind" and _on_foot(crash, a, b)):  # "ran from behind V2"
                 for q in {"same": (0,), "opposite": (180,), "crossing": (90, 270)}[relation]:
-                    score[q] += 0.6 * weight
+                    score[q] += (_IN_LINE if words in ("behind", "ahead") else _TOLD) * weight
     for me, sign in ((a, 1), (b, -1)):
         side = crash.motions[me].from_side
         if side:

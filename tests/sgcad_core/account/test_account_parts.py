@@ -222,6 +222,9 @@ def test_a_whole_report_leaves_nothing_unread(made):
 @pytest.mark.parametrize(("text", "field", "value"), [
     ("V2 was slowing for a school bus.", "text.further", "school bus"),
     ("V1 swerved to avoid a stopped truck and struck V2.", "text.further", "stopped truck"),
+    ("V1 was slowing for a queue of stopped vehicles when V2 struck it.", "text.further", "queue of stopped vehicles"),
+    ("V1 was struck by the door of V2.", "text.struck", "door"),
+    ("V1 stopped for pedestrians when V2 struck it.", "text.further", "pedestrian"),
     ("V1 was northbound when it went into the ditch.", "text.ground", "ditch"),
     ("V1 departed the road and came to rest in a driveway.", "text.ground", "driveway"),
     ("The rollover was preceded by an impact to a fire hydrant.", "text.struck", "hydrant"),

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sgcad_core.execution.contact import first_contact, moves
+from sgcad_core.case.records import ClosestApproach
+from sgcad_core.execution.contact import avoided, first_contact, moves
 from sgcad_core.geometry.distances import box_distance, distance_to
 from sgcad_core.geometry.plane import Box, overlap
+from sgcad_core.records.specs import Contact, NearCrash
 from tests.sgcad_core.formats.xosc_samples import trajectory
 
 K = np.arange(200)
@@ -74,3 +77,14 @@ def outline(box):
     ring = np.vstack([*sides, *(s[:, ::-1] for s in sides)]) * [box.length_m / 2, box.width_m / 2]
     c, s = np.cos(box.heading_rad), np.sin(box.heading_rad)
     return ring @ np.array([[c, s], [-s, c]]) + [box.x_m, box.y_m]
+
+
+@pytest.mark.parametrize(("told_m", "found_m", "expected"), [
+    (None, 0.41, True), (None, 1.4, True), (None, 0.05, False), (None, 2.0, False), (0.6, 0.62, True),
+    (0.6, 0.7, False),
+])  # fmt: skip
+def test_a_clearance_that_is_not_told_may_be_any_near_one(told_m, found_m, expected):
+    conflict = Contact(striker="V1", struck="V2", striker_area="front", struck_area="back")
+    near = NearCrash(conflict=conflict, clearance_m=told_m)
+    closest = ClosestApproach(actor="V1", other="V2", clearance_m=found_m, t_s=1.0)
+    assert avoided(near, None, closest) is expected

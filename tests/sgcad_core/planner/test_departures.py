@@ -140,3 +140,20 @@ def test_a_road_that_is_long_enough_or_dry_keeps_the_place_of_the_departure():
     icy = replace(role, surface="ice", actor=CAR.model_copy(update={"speed_mph": 55}))
     assert with_room(icy).place.station_m > 100.0
     assert with_room(replace(icy, place=role.place._replace(station_m=300.0))).place.station_m == 300.0
+
+
+@pytest.mark.parametrize("firm", [True, False])
+def test_a_vehicle_that_rolls_over_goes_on_past_what_it_struck(firm):
+    tree = TREE.model_copy(update={"firm": firm})
+    told = CourseTold(departs="right", rolls=True, roll_quarters=4)
+    made = plan(replace_thing(HITS_TREE, tree), roads(), courses={"V1": told})
+    car = made.trajectories[0]
+    assert made.realised
+    assert made.contact is not None
+    k = round(made.contact.t_s / 0.05)
+    assert math.hypot(car.x_m[-1] - car.x_m[k], car.y_m[-1] - car.y_m[k]) > 10.0, "it stops dead"
+
+
+def replace_thing(behavior, thing):
+    """The behavior with another thing that is struck."""
+    return behavior.model_copy(update={"actors": (behavior.actors[0], thing)})

@@ -158,3 +158,9 @@ def test_a_piece_in_the_way_is_loose_and_a_tree_firm() -> None:
     for word, loose, firm in (("some debris", True, False), ("a traffic cone", True, False), ("a tree", False, True)):
         thing = _actor(_behavior(f"V1 was traveling east and the front of V1 struck {word}.", PLAIN), "O1")
         assert (thing.loose, thing.firm) == (loose, firm)
+
+
+@pytest.mark.parametrize(("thing", "along_m"), [("guardrail", 14.0), ("wooden fence", 10.0), ("ditch", 12.0)])
+def test_the_first_thing_that_is_struck_is_as_long_as_things_of_its_name(thing: str, along_m: float) -> None:
+    found = _behavior(f"V1 was traveling east. V1 departed the road to the right and struck a {thing}.", PLAIN)
+    assert _actor(found, "O1").width_m == along_m

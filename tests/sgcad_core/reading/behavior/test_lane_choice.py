@@ -60,3 +60,28 @@ def test_one_that_cuts_in_starts_beside_the_lane_of_the_one_that_runs_into_it() 
     assert lanes(text) == (1, 2)
     told = "V1 was northbound in the left lane and changed lanes to the right. V2 was northbound." + ROAD + rear
     assert lanes(told) == (3, 2)
+
+
+def test_a_row_drives_in_the_lane_that_is_told_of_one_of_it() -> None:
+    row = (
+        "V3 was traveling west in lane 3. V1 and V2 were traveling behind V3. The front of V1 struck the back of V2. "
+        "The front of V1 then struck the back of V3."
+    )
+    assert lanes(row + ROAD) == (3, 3, 3)
+
+
+def test_two_come_into_the_middle_lane_from_both_sides() -> None:
+    near = (
+        "Subject driver has just changed from the far left lane into the middle lane. Then a car in the far right lane "
+        "changes into the middle lane as well, almost side swiping the subject's vehicle."
+    )
+    assert lanes(near + ROAD) == (3, 1)
+
+
+def test_the_rightmost_lane_of_a_report_without_numbers_is_one_of_two() -> None:
+    text = "The AV was proceeding north in the rightmost lane. A car behind the AV struck the rear of the AV."
+    legs = layout_of_facts(read(text).roads).legs
+    assert {leg.bearing: leg.lanes_in for leg in legs}["S"] == 2
+    same = "V1 was northbound in the right lane. V2 was northbound. The front of V2 struck the back of V1."
+    numbered = layout_of_facts(read(same).roads).legs
+    assert {leg.bearing: leg.lanes_in for leg in numbered}["S"] == 1

@@ -79,6 +79,8 @@ def test_steering_behind_the_contact_is_no_evasion() -> None:
         ("came to rest on the northwest corner of the intersection", RestTold(None, "off_road", "NW")),
         ("came to rest against a large tree", RestTold(against="tree")),
         ("rolled over and came to rest on its roof", RestTold(attitude="roof")),
+        ("rolled onto its left side and came to rest", RestTold(attitude="left")),
+        ("came to rest in the northbound shoulder", RestTold(None, "shoulder", "E")),
     ],
 )
 def test_a_rest_is_read_in_its_parts(words: str, rest: RestTold) -> None:

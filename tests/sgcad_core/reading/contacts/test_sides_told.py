@@ -79,3 +79,71 @@ def test_the_damage_tells_the_side_of_a_contact_that_has_none() -> None:
     assert set(contact.struck_may) == {"back", "left"}
     named = "The pickup truck made contact with the right door of the AV, damaging the AV's rear bumper."
     assert read(street + named).crash.contacts[0].struck_area == "right"
+
+
+def first_sides(text: str) -> tuple[str, str]:
+    """The sides of the first contact, striker first."""
+    first = read(text).crash.contacts[0]
+    return first.striker_area, first.struck_area
+
+
+def test_a_corner_that_stands_is_passed_with_a_flank() -> None:
+    text = (
+        "The AV was stopped eastbound when a car that had been behind the AV began to maneuver around the AV on its "
+        "left. The passenger side of the car made contact with the rear driver side of the AV."
+    )
+    assert first_sides(text) == ("right", "left")
+
+
+def test_corners_of_two_that_pass_each_other_touch_with_their_flanks() -> None:
+    text = (
+        "The AV was southbound and stopped. A van was northbound, and the front driver side of the van made contact "
+        "with the rear driver side of the AV."
+    )
+    assert first_sides(text) == ("left", "left")
+
+
+def test_one_that_nearly_changes_into_the_lane_of_another_one_comes_beside_it() -> None:
+    text = (
+        "The subject driver is in the left lane when a car in the right lane starts to change into the subject "
+        "driver's lane. The subject driver brakes to avoid being hit."
+    )
+    assert first_sides(text) == ("left", "right")
+
+
+def test_what_this_caused_is_a_second_contact() -> None:
+    text = (
+        "V1 was southbound. V2 was westbound. The front of V1 struck the right side of V2. V1 spun clockwise. This "
+        "caused the left side of V1 to come into contact with the right side of V2."
+    )
+    told = read(text).crash.impacts
+    assert [(i.actor, i.other, i.actor_area, i.other_area) for i in told] == [("V1", "V2", "left", "right")]
+
+
+def test_things_of_one_kind_are_as_many_as_told() -> None:
+    text = "V1 was northbound, departed the road and struck {}."
+    struck = {"a tree": 1, "two trees": 2, "several small trees": 2, "five mailboxes": 3, "a tree and two poles": 3}
+    assert {told: len(read(text.format(told)).crash.impacts) for told in struck} == struck
+
+
+@pytest.mark.parametrize(("text", "first"), [
+    ("Subject driver is changing into the left lane. The lead vehicle applies his brakes.", ("V1", "front", "back")),
+    ("Subject driver is changing into the left lane. A following vehicle nearly hits her.", ("V2", "front", "back")),
+    ("Subject driver is trying to merge onto the interstate. A truck next to her does not let her in. She brakes.",
+     ("V1", "left", "right")),
+])  # fmt: skip
+def test_in_a_near_crash_the_place_of_the_other_one_tells_who_comes_from_behind(
+    text: str, first: tuple[str, ...]
+) -> None:
+    contact = read(text).crash.contacts[0]
+    sides = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
+    other = "V2" if first[0] == "V1" else "V1"
+    assert (sides[first[0]], sides[other]) == first[1:]
+
+
+def test_who_starts_after_having_stopped_does_not_stand() -> None:
+    text = (
+        "Subject driver is starting to make a left turn after having stopped for a traffic signal, when a vehicle "
+        "heading in the opposite direction starts to accelerate after having stopped for the same signal."
+    )
+    assert [v.maneuver for v in read(text).crash.vehicles] == ["turn_left", "straight"]

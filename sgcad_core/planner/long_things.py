@@ -1,0 +1,56 @@
+"""Long things beside the road (guardrails, walls, fences, ditches): they run along it, so that a vehicle meets them at
+an angle and slides along.
+
+Frames: headings counter-clockwise from east, radians; a thing's length is its depth, its width runs along the road, and
+its front faces what comes. Knows boxes; no actor, no road and no time.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats, Size, corners_of
+from sgcad_core.records.specs import Area
+
+_LEAST_M, _SHAPE = 4.0, 2.5
+"""Width of the shortest of them, and how often its depth it is at least."""
+_BY_END_RAD, _BY_FLANK_RAD = math.radians(32.0), math.radians(10.0)
+"""Angle between a vehicle and the thing that its front or back corner meets, and its flank. A corner lies on the front
+from arctan(width / length) on: 21 degrees on a car."""
+_AHEAD_M = 2.5
+"""How far on along it the middle of the thing lies: the vehicle slides that way."""
+
+
+def is_long(size: Size) -> bool:
+    """Whether a thing of a depth and a width runs along the road."""
+    return size[1] >= max(_LEAST_M, _SHAPE * size[0])
+
+
+def meeting_angle(side: Area | None) -> float:
+    """The angle between the way of a vehicle and the thing that one of its sides meets."""
+    return _BY_FLANK_RAD if side in ("left", "right") else _BY_END_RAD
+
+
+def hand_of_side(side: Area | None, leaves: int) -> tuple[int, ...]:
+    """On which hands of a vehicle the thing may lie that a side meets: 1 left, -1 right; `leaves`: the hand on which it
+    leaves the road, 0 where it stays on it."""
+    told = {"left": 1, "right": -1}.get(side or "", leaves)
+    return (told,) if told else (-1, 1)
+
+
+def turned_to(hand: int, angle_rad: float) -> float:
+    """Heading of the thing against that of the vehicle, whose way it crosses at an angle on one hand."""
+    return -hand * (math.pi / 2 + angle_rad)
+
+
+def beside(pose: Floats, by: Size, thing: Size, heading_rad: float, depth_m: float) -> Floats:
+    """(3,) pose of the thing at a heading, overlapped by the nearest corner of a box at a pose by a depth, metres."""
+    out = np.array([math.cos(heading_rad), math.sin(heading_rad)])
+    corners = corners_of(pose[None], by)[0]
+    nearest = corners[int(np.argmin(corners @ out))]
+    along = np.array([-out[1], out[0]])
+    ahead = math.copysign(_AHEAD_M, float(along @ [math.cos(pose[2]), math.sin(pose[2])]))
+    x, y = nearest - out * (thing[0] / 2 - depth_m) + along * ahead
+    return np.array([x, y, heading_rad])

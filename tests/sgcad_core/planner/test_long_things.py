@@ -1,0 +1,62 @@
+"""Long things run along the road: a vehicle that leaves it meets them at an angle and slides along."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from sgcad_core.geometry.plane import Box, contact_area, overlap
+from sgcad_core.planner.long_things import beside, hand_of_side, is_long, meeting_angle, turned_to
+from sgcad_core.planner.plan import plan
+from sgcad_core.records.course import CourseTold
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
+from tests.sgcad_core.planner.test_departures import CAR, roads
+
+RAIL = Actor(
+    id="O1", kind="object", road="S", direction="forward", maneuver="stopped", length_m=0.4, width_m=14.0, firm=True
+)
+
+
+@pytest.mark.parametrize(("size", "expected"), [
+    ((0.4, 14.0), True), ((0.4, 0.4), False), ((5.0, 5.0), False), ((0.4, 3.0), False),
+])  # fmt: skip
+def test_a_long_thing_is_many_times_as_wide_as_deep(size, expected):
+    assert is_long(size) is expected
+
+
+@pytest.mark.parametrize(("side", "leaves", "expected"), [
+    ("left", -1, (1,)), ("front", -1, (-1,)), ("front", 0, (-1, 1)), (None, 1, (1,)),
+])  # fmt: skip
+def test_it_lies_on_the_side_that_meets_it_or_where_the_road_is_left(side, leaves, expected):
+    assert hand_of_side(side, leaves) == expected
+
+
+@pytest.mark.parametrize("side", ["front", "left", "right"])
+@pytest.mark.parametrize("way_deg", [0.0, 75.0, 200.0])
+def test_the_box_meets_it_with_that_side(side, way_deg):
+    pose, car, rail = np.array([3.0, -2.0, math.radians(way_deg)]), (4.7, 1.8), (0.4, 14.0)
+    hand = hand_of_side(side, 1)[0]
+    put = beside(pose, car, rail, float(pose[2]) + turned_to(hand, meeting_angle(side)), 0.03)
+    boxes = Box.at(pose, car), Box.at(put, rail)
+    assert overlap(*boxes)
+    assert contact_area(*boxes) == side
+    assert contact_area(*boxes[::-1]) == "front"
+
+
+@pytest.mark.parametrize("departs", ["left", "right"])
+@pytest.mark.parametrize("side", ["front", "left"])
+def test_a_vehicle_that_leaves_the_road_slides_along_a_guardrail(departs, side):
+    met = Contact(striker="V1", struck="O1", striker_area=side, struck_area="front")
+    made = plan(
+        BehaviorSpec(actors=(CAR, RAIL), contacts=(met,)), roads(median="grass"),
+        courses={"V1": CourseTold(departs=departs)},
+    )  # fmt: skip
+    car, rail = made.trajectories
+    assert made.realised
+    assert made.contact is not None
+    off_road = abs(math.remainder(rail.heading_rad[0], math.pi))
+    assert off_road < math.radians(30), "it stands across the road"
+    k = round(made.contact.t_s / 0.05)
+    assert math.hypot(car.x_m[-1] - car.x_m[k], car.y_m[-1] - car.y_m[k]) > 5.0, "it stops dead"
