@@ -224,9 +224,10 @@ class Wreck:
         return self.now - self.touches[key_of(a, b)] <= 1e-9 and not (a.gives_way or b.gives_way)
 
     def _let_part(self, sample: int) -> None:
-        """Lets bodies part that no longer hold each other."""
+        """Lets bodies part that no longer hold each other, or came apart before they were to."""
         for key in list(self.blows):
-            if self._held_s(a := self.named[key[0]], b := self.named[key[1]], sample) <= 0.0:
+            a, b = self.named[key[0]], self.named[key[1]]
+            if key not in self.touches or self._held_s(a, b, sample) <= 0.0:
                 part(self.blows.pop(key), a.body, b.body)
 
     def _joined(self, hitch: Hitch, act: Callable[[Hitch, Body, Body], bool]) -> bool:

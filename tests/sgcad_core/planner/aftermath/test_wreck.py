@@ -170,6 +170,21 @@ def test_nothing_lies_in_anything_and_all_that_was_touched_comes_to_rest(movers)
         assert np.abs(np.diff(poses[m.name][-3:], axis=0)).max() < 0.02
 
 
+def test_bodies_with_a_told_second_touch_may_come_apart_before_the_first_one_is_over():
+    """A corner turns out of the other body within the time for which the touch is held."""
+    pair = frozenset({frozenset({"V1", "V2"})})
+    movers = (
+        mover("V1", (30.3057, 30.1522, -2.35873), (-16.4766, -16.3696)),
+        mover("V2", (-13.2701, -3.30397, 0.0861495), (7.31003, 0.631313)),
+    )
+    wreck = Wreck(movers, COUNT, again=pair, told=pair)
+    poses, touches = wreck.settle()
+    assert len(wreck.past) > 0
+    assert not wreck.blows
+    assert len(touches) == len(wreck.past) + len(wreck.touches)
+    assert deepest(movers, poses) < 0.06
+
+
 def test_a_light_body_between_two_heavy_ones_lies_in_neither():
     """Squeezed from both sides: the impulses of one step go back and forth until nobody approaches anybody."""
     movers = (
