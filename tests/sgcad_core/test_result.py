@@ -126,7 +126,7 @@ def test_a_near_crash_has_a_closest_approach_instead_of_a_contact():
 
 
 @pytest.mark.parametrize(("apart_m", "clearance_m", "observed", "realised"), [
-    (1.5, 1.5, None, True), (1.5, None, None, False), (0.6, None, contact(), False),
+    (1.5, 1.5, None, True), (1.5, None, None, True), (1.8, None, None, False), (0.6, None, contact(), False),
 ])  # fmt: skip
 def test_a_near_crash_is_realised_where_nobody_touches_and_both_come_as_near_as_told(
     apart_m, clearance_m, observed, realised

@@ -315,7 +315,7 @@ def test_two_whose_flanks_touch_on_a_ramp_s_road_drive_the_same_way() -> None:
     (contact,) = facts.crash.contacts
     assert len({v.heading for v in facts.crash.vehicles}) == 1
     assert facts.crash.vehicles[0].origin == facts.junction.kind == "ramp"
-    assert (contact.striker_area, contact.struck_area) == ("right", "left")
+    assert (contact.striker_area, contact.struck_area) == ("left", "right")  # who merges comes from the right
 
 
 @pytest.mark.parametrize(("road", "mph"), [("freeway", 60), ("rural road", 50), ("road", None)])
