@@ -68,8 +68,9 @@ class Rules(PlannedWriter):
 
     def _compiled(self, facts: CrashFacts, spec: RoadSpec, network: RoadNetwork, reading: Reading) -> Scenario:
         """The scenario of one reading of the crash."""
-        behavior = with_acts_read(behavior_of_facts(facts, spec), facts, reading.signals)
-        return self._of_behavior(behavior, facts.driven, network, reading)
+        courses = facts.driven
+        behavior = with_acts_read(behavior_of_facts(facts, spec), courses, reading.signals)
+        return self._of_behavior(behavior, courses, network, reading)
 
     def _of_behavior(
         self, behavior: BehaviorSpec, courses: Courses, network: RoadNetwork, reading: Reading

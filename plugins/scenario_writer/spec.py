@@ -61,9 +61,10 @@ class SpecScenario(PlannedWriter):
         )
         reading = context.reading
         behavior = parse_answer(ask(context, query).text, BehaviorSpec)
-        if not self.acts:
-            behavior = with_acts_read(as_read(behavior, reading.crash), reading.crash, reading.signals)
-        reading = with_acts(reading, behavior)
+        if self.acts:
+            reading = with_acts(reading, behavior)
+        else:
+            behavior = with_acts_read(as_read(behavior, reading.crash), reading.crash.driven, reading.signals)
         return compile_scenario(
             behavior, network, self.openscenario, self.encoding,
             may_skid=reading.lost_control, courses=reading.crash.driven, signals=reading.signals,

@@ -66,6 +66,11 @@ def _lacks(sentence: Sentence, what: str, value: str, text: str, reason: str) ->
     )  # fmt: skip
 
 
+def _undrawn(sentence: Sentence, words: str) -> Item:
+    """A road user who is named and is not in the scenario."""
+    return _lacks(sentence, "further", words.lower(), f"{words!r} is named", "it is not in the scenario")
+
+
 # ------------------------------------------------------------------ actors
 def _numbers(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     """Numbered vehicles that were not read, and counts above the number of vehicles in the scenario."""
@@ -98,7 +103,7 @@ def _further(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     if made.reading.crash.unnumbered or any(name.startswith("V") for name in made.tracks.keys() - numbered):
         return
     for match in _FURTHER.finditer(sentence.text):
-        yield _lacks(sentence, "further", match[0].lower(), f"{match[0]!r} is named", "it is not in the scenario")
+        yield _undrawn(sentence, match[0])
 
 
 def _served(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
@@ -111,7 +116,7 @@ def _served(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
         for match in wording.finditer(sentence.text):
             words = match["kind"].lower()
             if not any(kind in words for kind in kinds - {"car"}):
-                yield _lacks(sentence, "further", words, f"{words!r} is named", "it is not in the scenario")
+                yield _undrawn(sentence, words)
 
 
 def _crowd(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
@@ -119,10 +124,10 @@ def _crowd(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     are waited for; and doors that touch something, which no scenario has."""
     vehicles = [actor for actor in made.scenario.actors if actor_kind(actor.type).drives]
     if len(vehicles) <= _PAIR and (match := rule("account.crowd").search(sentence.text)):
-        yield _lacks(sentence, "further", match[0].lower(), f"{match[0]!r} is named", "it is not in the scenario")
+        yield _undrawn(sentence, match[0])
     if made.reading.crash.unnumbered and len(vehicles) <= _PAIR:
         for match in rule("account.another").finditer(sentence.text):
-            yield _lacks(sentence, "further", match[0].lower(), f"{match[0]!r} is named", "it is not in the scenario")
+            yield _undrawn(sentence, match[0])
     if not any(name[0] in "PB" for name in made.tracks) and (match := rule("account.waited_for").search(sentence.text)):
         yield _lacks(sentence, "further", match["who"].lower(), f"{match[0]!r} is told", "none is in the scenario")
     if match := rule("account.door").search(sentence.text):

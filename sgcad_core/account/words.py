@@ -13,7 +13,8 @@ FIELDS = {
     "striker_area": "striking side", "struck_area": "struck side",
 }  # fmt: skip
 """Display names of fields; other fields are shown by their own names."""
-_JUNCTIONS: dict[str, str] = {record.kind: record.called.removeprefix("a ") for record in JUNCTIONS}
+JUNCTION_WORDS: dict[str, str] = {record.kind: record.called.removeprefix("a ") for record in JUNCTIONS}
+"""Kinds of junctions for people, without an article."""
 UNITS = {"mph": " mph", "deg": " degrees", "m": " m"}
 
 
@@ -41,8 +42,8 @@ def shown(field: str, value: Value) -> str:
         return "yes"
     if value is None:
         return "none"
-    if field == "junction.kind" and value in _JUNCTIONS:
-        return _JUNCTIONS[str(value)]
+    if field == "junction.kind" and value in JUNCTION_WORDS:
+        return JUNCTION_WORDS[str(value)]
     text = ", ".join(value) if isinstance(value, tuple | list) else str(value).replace("_", " ")
     return text + UNITS.get(field.rpartition("_")[2], "") if "_" in field.rpartition(".")[2] else text
 

@@ -8,6 +8,7 @@ counts as stated. What no reading holds (lanes of one leg, a start road) is laid
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -19,9 +20,10 @@ from sgcad_core.reading.contacts.contact_records import AREAS, ContactFacts
 from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.motion.absolute_headings import turned_vehicle
+from sgcad_core.reading.reading_with_acts import crash_saying, saying
 from sgcad_core.reading.roads.road_facts import RoadFacts
 from sgcad_core.reading.text.compass import between
-from sgcad_core.records.acts import ACT_FIELDS, courses_with, with_said
+from sgcad_core.records.acts import ACT_FIELDS, Acts, with_said
 from sgcad_core.records.edits import Edit, by_person, canonical, effective, of_contacts, values
 from sgcad_core.records.facts import Fact, Value
 from sgcad_core.records.specs import Area
@@ -47,13 +49,8 @@ def with_edits(reading: Reading, edits: Sequence[Edit]) -> Reading:
     given = values(edits)
     crash = _crash(reading.crash, given)
     roads = replace(_roads(reading.roads, given), crash=crash)
-    acts = {v.id: _of_actor(given, v.id) for v in crash.vehicles}
-    signals: Any = {who: fields["signal"] for who, fields in acts.items() if fields.get("signal")}
-    return replace(
-        reading, crash=crash, roads=roads, signals={**reading.signals, **signals},
-        lost_control=reading.lost_control or any(fields.get("lost_control") is True for fields in acts.values()),
-        facts=_facts(reading.facts, edits), edits=tuple(edits),
-    )  # fmt: skip
+    made = replace(reading, crash=crash, roads=roads, facts=_facts(reading.facts, edits), edits=tuple(edits))
+    return saying(made, _acts(crash, given))
 
 
 def holds(crash: CrashFacts, edits: Sequence[Edit]) -> bool:
@@ -78,7 +75,7 @@ def _crash(crash: CrashFacts, given: Given) -> CrashFacts:
     others = tuple(replace(o, kind=_of_actor(given, o.id).get("kind", o.kind)) for o in crash.others)  # type: ignore[arg-type]
     crash = _contacts(replace(crash, others=others), given)
     sky: dict[str, Any] = {n: given[f"conditions.{n}"] for n in _SKY if f"conditions.{n}" in given}
-    return replace(crash, **sky)
+    return crash_saying(replace(crash, **sky), _acts(crash, given))
 
 
 def _of_actor(given: Given, name: str) -> dict[str, Value]:
@@ -120,7 +117,6 @@ def _with_vehicle(crash: CrashFacts, name: str, fields: Mapping[str, Value]) -> 
     known = crash.vehicle(name)
     if known is None or not fields:
         return crash
-    crash = _acting(crash, known, {field: fields[field] for field in ACT_FIELDS if field in fields})
     changed = replace(known, **_update(known, fields))
     vehicles = tuple(changed if v.id == name else v for v in crash.vehicles)
     heading: Any = fields.get("heading")
@@ -132,15 +128,15 @@ def _with_vehicle(crash: CrashFacts, name: str, fields: Mapping[str, Value]) -> 
     return replace(crash, vehicles=vehicles, oriented=True)
 
 
-def _acting(crash: CrashFacts, known: VehicleFacts, said: Given) -> CrashFacts:
-    """What a person says of a vehicle's acts; a null leaves open what was read."""
-    if not said:
-        return crash
-    try:
-        acts = with_said(None, said)
-    except ValidationError:
-        return crash
-    return replace(crash, courses=courses_with(crash.courses, {known.id: acts}))
+def _acts(crash: CrashFacts, given: Given) -> dict[str, Acts]:
+    """What a person says of vehicles' acts, where it is possible together; a null leaves open what was read."""
+    found = {}
+    for v in crash.vehicles:
+        fields = {field: value for field, value in _of_actor(given, v.id).items() if field in ACT_FIELDS}
+        with suppress(ValidationError):
+            if acts := with_said(None, fields):
+                found[v.id] = acts
+    return found
 
 
 def _update(known: VehicleFacts, fields: Mapping[str, Value]) -> dict[str, Any]:
@@ -151,8 +147,6 @@ def _update(known: VehicleFacts, fields: Mapping[str, Value]) -> dict[str, Any]:
         update |= {"maneuver": fields["maneuver"], "meant": None, "from_stop": False, "exit_heading": None}
     if "maneuver" in fields:
         update |= {"maneuver_stated": True}
-    if fields.get("from_rest") is not None:
-        update |= {"from_stop": fields["from_rest"]}
     if "start_lane" in fields:
         update |= {"lane": fields["start_lane"], "lane_word": None}
     return update

@@ -6,7 +6,7 @@ Part of an actor's spec. A field that is null is not said: there the reading of 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Annotated, Any
 
 from pydantic import Field
@@ -49,7 +49,7 @@ class Acts(Spec):
     rest: Rest | None = None
 
 
-_SAME = ("from_rest", "lost_control", "departs", "spin", "spin_deg", "rolls", "roll_quarters", "rolls_to")
+_SAME = tuple(field.name for field in fields(CourseTold) if field.name in Acts.model_fields and field.name != REST)
 """Fields that a course has by the same name."""
 ACT_FIELDS = (
     *(name for name in Acts.model_fields if name != REST), *(f"{REST}.{name}" for name in Rest.model_fields),
@@ -75,8 +75,8 @@ def acts_of(course: CourseTold, signal: SignalState | None = None) -> Acts | Non
     stay with the course."""
     said: dict[str, Any] = {name: value for name in _SAME if (value := getattr(course, name)) and value != "either"}
     rest = {name: value for name in Rest.model_fields if (value := getattr(course.rest, name)) is not None}
-    if not isinstance(rest.get("lane", 1), int) or rest.get("lane", 1) < 1:
-        del rest["lane"]
+    lane = rest.pop("lane", None)
+    rest |= {"lane": lane} if isinstance(lane, int) and lane > 0 else {}
     said |= {"rest": rest} if rest else {}
     said |= {"signal": signal} if signal else {}
     said |= {"evasion": evasion} if (evasion := _evasion_of(course)) else {}
@@ -100,7 +100,7 @@ def _rest_with(read: RestTold, said: Rest | None) -> RestTold:
     update: dict[str, Any] = {name: value for name in Rest.model_fields if (value := getattr(said, name)) is not None}
     if "where" in update and "side" not in update:
         update["side"] = read.side if read.where in (None, update["where"]) else None
-    if "lane" in update:
+    if update.get("lane", read.lane) != read.lane:
         update["lane_way"] = None
     return replace(read, **update)
 
@@ -114,19 +114,18 @@ def steering_of(evasion: EvasiveManeuver) -> Steering | None:
 
 def act_of(acts: Acts | None, name: str) -> Any:
     """The value of one of `ACT_FIELDS`; None where it is not said."""
-    part: Acts | Rest | None = acts
-    if name.startswith(f"{REST}."):
-        part, name = acts.rest if acts else None, name.removeprefix(f"{REST}.")
-    return getattr(part, name) if part is not None else None
+    group, _, last = name.rpartition(".")
+    part = acts.rest if acts and group else acts
+    return getattr(part, last, None)
 
 
 def with_said(acts: Acts | None, given: Mapping[str, Any]) -> Acts | None:
     """The acts with given values by their names in `ACT_FIELDS`. Raises pydantic.ValidationError."""
     if not given:
         return acts
-    fields = acts.model_dump() if acts else {}
-    rest = fields.get(REST) or {}
+    said = acts.model_dump() if acts else {}
+    rest = said.get(REST) or {}
     for name, value in given.items():
-        where = rest if name.startswith(f"{REST}.") else fields
-        where[name.removeprefix(f"{REST}.")] = value
-    return Acts.model_validate(fields | {REST: rest if any(v is not None for v in rest.values()) else None})
+        group, _, last = name.rpartition(".")
+        (rest if group else said)[last] = value
+    return Acts.model_validate(said | {REST: rest if any(v is not None for v in rest.values()) else None})

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
-from sgcad_core.records.words import Area, Compass
+from sgcad_core.records.words import Area, Compass, RoadSide
 
 Where = Literal["road", "intersection", "shoulder", "median", "off_road"]
 Attitude = Literal["wheels", "roof", "left", "right"]
@@ -21,7 +21,7 @@ Hand = Literal["left", "right"]
 Steering = Literal["left", "right", "either"]
 RestLane = Literal["own", "left", "right", "middle", "left_turn", "right_turn", "center_turn"]
 """A lane at rest by its word; own: the one in which the vehicle began."""
-DepartureSide = Compass | Hand | Literal["either"]
+DepartureSide = RoadSide | Literal["either"]
 """Where a vehicle leaves the road: a compass word, a hand as seen in its direction of travel; either: not told."""
 MoveKind = Literal["departs", "returns", "steers", "crosses", "yaws"]
 """Leaves the road; comes back on it, or into its lane; steers aside; crosses the center line; turns in a skid."""
@@ -49,7 +49,7 @@ class RestTold:
 
     facing_deg: float | None = None
     where: Where | None = None
-    side: Compass | Hand | None = None
+    side: RoadSide | None = None
     """Of the road or the intersection: a compass word, or a hand as seen in its direction of travel."""
     attitude: Attitude | None = None
     against: str | None = None

@@ -19,7 +19,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from sgcad_core.case.records import Stage
 from sgcad_core.errors import WrongEdit
 from sgcad_core.kinds import JunctionKind
-from sgcad_core.records.acts import ACT_FIELDS, REST, Acts, Rest
+from sgcad_core.records.acts import ACT_FIELDS, Acts, Rest
 from sgcad_core.records.edits import AS_READ, canonical
 from sgcad_core.records.facts import Value
 from sgcad_core.records.specs import Actor, BehaviorSpec, Compass, Contact, NearCrash, Node, Road, RoadSpec
@@ -191,8 +191,8 @@ def _actors() -> Iterator[Editable]:
             yield Editable(f"{group}.*.{name}", "scenario", meaning[name], _annotation(Actor, field), refers,
                            _AT_ACTOR)  # fmt: skip
         for name in ACT_FIELDS if group == "vehicles" else ():
-            owner, last = (Rest, name.removeprefix(f"{REST}.")) if name.startswith(f"{REST}.") else (Acts, name)
-            yield Editable(f"{group}.*.{name}", "scenario", _ACTS_MEAN[name], _annotation(owner, last),
+            part, _, last = name.rpartition(".")
+            yield Editable(f"{group}.*.{name}", "scenario", _ACTS_MEAN[name], _annotation(Rest if part else Acts, last),
                            concerns=_AT_ACTOR)  # fmt: skip
 
 

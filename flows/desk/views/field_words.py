@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sgcad_core.kinds import JUNCTIONS
+from sgcad_core.account.words import JUNCTION_WORDS
 
 _NAMES = {
     "kind": "is a", "start_speed_mph": "speed before", "final_speed_mph": "last speed", "start_road": "starts on",
@@ -18,7 +18,6 @@ _NAMES = {
     "stem": "leg that ends there", "minor": "has the sign", "near_crash": "near crash",
     "facing_deg": "faces at rest", "where": "rests", "lane_way": "rests in a lane toward", "distance_m": "rests after",
 }  # fmt: skip
-_JUNCTIONS: dict[str, str] = {record.kind: record.called.removeprefix("a ") for record in JUNCTIONS}
 _UNITS = {"_mph": "mph", "_m": "m", "_deg": "°", "_s": "s"}
 
 
@@ -45,7 +44,7 @@ def shown(field: str, value: Any) -> str:
     if isinstance(value, list | tuple):
         return ", ".join(str(v).replace("_", " ") for v in value) or "none"
     if field.endswith("junction.kind"):
-        return _JUNCTIONS.get(value, str(value).replace("_", " "))
+        return JUNCTION_WORDS.get(value, str(value).replace("_", " "))
     unit = unit_of(field)
     text = f"{value:g}" if isinstance(value, int | float) else str(value).replace("_", " ")
     return f"{text} {unit}" if unit and isinstance(value, int | float) else text

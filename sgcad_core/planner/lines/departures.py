@@ -114,13 +114,13 @@ def still_leaving(role: Role, drift: Drift, ease: float) -> Drift:
     keeps its speed and meets what stands there as it drifts away, since ice allows no sharper line."""
     if drift.length_m >= shift_length_m(role, drift.left_m, ease):
         return drift
-    length = min(shift_length_m(role, 2 * drift.left_m, ease), max(2 * room_before_m(role), drift.length_m))
-    return drift._replace(left_m=2 * drift.left_m, length_m=length, end_m=drift.end_m + length / 2)
+    return half_gone(role, drift, ease, max(2 * room_before_m(role), drift.length_m))
 
 
-def half_gone(role: Role, drift: Drift, ease: float) -> Drift:
-    """A way off the road that is half done at the place, where it is steepest: there it meets what runs along it."""
-    length = shift_length_m(role, 2 * drift.left_m, ease)
+def half_gone(role: Role, drift: Drift, ease: float, most_m: float = math.inf) -> Drift:
+    """A way off the road that is half done at the place, where it is steepest: there it meets what runs along it.
+    `most_m`: its longest."""
+    length = min(shift_length_m(role, 2 * drift.left_m, ease), most_m)
     return drift._replace(left_m=2 * drift.left_m, length_m=length, end_m=drift.end_m + length / 2)
 
 

@@ -7,7 +7,6 @@ does not fit costs, and the cheapest choice stands. Works on any road spec. Know
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from sgcad_core.errors import Refused
 from sgcad_core.kinds import RAMP, actor_kind
@@ -19,7 +18,7 @@ from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.layout.road_ways import Way
 from sgcad_core.records.acts import acts_of
-from sgcad_core.records.course import CourseTold
+from sgcad_core.records.course import Courses, CourseTold
 from sgcad_core.records.specs import (  # fmt: skip
     Actor,
     BehaviorSpec,
@@ -75,12 +74,9 @@ def as_read(behavior: BehaviorSpec, facts: CrashFacts) -> BehaviorSpec:
     return behavior.model_copy(update={"contacts": (), "near_crash": near_crash_of(near, behavior.contacts[0])})
 
 
-def with_acts_read(behavior: BehaviorSpec, facts: CrashFacts, signals: Mapping[str, SignalState]) -> BehaviorSpec:
+def with_acts_read(behavior: BehaviorSpec, courses: Courses, signals: Mapping[str, SignalState]) -> BehaviorSpec:
     """The behavior with what the text tells of vehicles beside their maneuvers; `signals`: the told state by id."""
-    told = {
-        v.id: acts_of(replace(course, from_rest=v.from_stop or course.from_rest), signals.get(v.id))
-        for v in facts.vehicles for course in (facts.courses.get(v.id, CourseTold()),)
-    }  # fmt: skip
+    told = {who: acts_of(courses.get(who, CourseTold()), signals.get(who)) for who in {*courses, *signals}}
     actors = tuple(actor.model_copy(update={"acts": told.get(actor.id)}) for actor in behavior.actors)
     return behavior.model_copy(update={"actors": actors})
 

@@ -39,9 +39,6 @@ COURSES = st.builds(
 @given(COURSES)
 def test_the_acts_of_a_course_change_nothing_in_it(course):
     known = replace(course, no_evasion=course.no_evasion and not (course.brakes or course.steers))
-    numbered = isinstance(course.rest.lane, int) and course.rest.lane > 0
-    if numbered:  # a numbered lane is of the direction that the writer means
-        known = replace(known, rest=replace(known.rest, lane_way=None))
     assert course_with(known, acts_of(known)) == known
 
 
