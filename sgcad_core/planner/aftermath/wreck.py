@@ -296,6 +296,5 @@ class Wreck:
         held = self.now - self.touches[key_of(a, b)] < for_s and seen.gap_m > -_DEEPEST_M
         if seen.gap_m >= APART_M or held:
             return False
-        by = min(APART_M - seen.gap_m, _PARTING_MPS * _LONGEST_S / 2)
-        shift(a, b, seen, by)
+        shift(a, b, seen, min(APART_M - seen.gap_m, _PARTING_MPS * _LONGEST_S / 2))
         return True
