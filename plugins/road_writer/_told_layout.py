@@ -8,7 +8,6 @@ from typing import Literal, cast
 from sgcad_core.case.records import Context
 from sgcad_core.errors import Refused
 from sgcad_core.interfaces import Retriever
-from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
 from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
 from sgcad_core.records.specs import RoadLayout
 from sgcad_core.registry import plugin_class
@@ -23,11 +22,10 @@ def no_crash() -> Refused:
 
 
 def told_layout(context: Context) -> RoadLayout:
-    """The layout of the narrative's road facts. Raises Refused for a text without a crash or a place not drawn."""
+    """The layout of the narrative's road facts. Raises Refused for a text without a crash."""
     facts = context.reading.roads
     if not facts.crash.vehicles and not facts.roads:
         raise no_crash()
-    refuse_unsupported(facts.junction.unsupported)
     return layout_of_facts(facts, Defaults())
 
 

@@ -21,7 +21,6 @@ from sgcad_core.formats.osm.street_map import maps_in, read_street_map
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.interfaces import Ask, RoadWriter
-from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
 from sgcad_core.reading.roads.named_places import named_places
@@ -68,7 +67,6 @@ class Template(RoadWriter):
         """The network of facts, parameters standing in for what they leave open. Raises as `write` does."""
         if not (facts.crash.vehicles or facts.roads or _CRASH_WORDS.search(narrative)):
             raise no_crash()
-        refuse_unsupported(facts.junction.unsupported)
         defaults = Defaults(self.lanes_each_way, self.speed_limit_mph)
         place = self._place(narrative, facts, defaults)
         laid = laid_on(place, facts, axes_of(narrative))

@@ -19,7 +19,6 @@ from sgcad_core.findings import FindingFactory
 from sgcad_core.formats.sumo.net_xml import LaneGraph, parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, junction_kind, unsupported_kind
-from sgcad_core.reading.junctions.unsupported_places import not_drawn
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.layout.legs_used import ahead, legs_used, turns_off
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
@@ -42,7 +41,7 @@ _ORDER = ("refuse", "repair", "question", "doubt", "note")
 class RoadNarrative(Validator):
     """Checks a network's lanes, legs, one-way roads and directions against the narrative; limits are notes.
 
-    A crash at a place that cannot be drawn is refused, or noted if its road can be drawn. limit_tolerance_mph is the
+    A crash at a place that cannot be drawn as it is is noted. limit_tolerance_mph is the
     allowed difference of a speed limit.
     """
 
@@ -277,10 +276,11 @@ def _ids(roads: list[CompiledRoad]) -> str:
 
 
 def _not_drawn(facts: RoadFacts) -> Iterator[Finding]:
-    """A finding for every place of the crash that cannot be drawn."""
+    """A note for every place of the crash that cannot be drawn as it is."""
     for kind in facts.junction.unsupported:
         record = unsupported_kind(kind)
-        yield _finding(not_drawn([kind]), "junction", record.called, record.remedy, record.severity)
+        what = f"the crash happened at {record.called}, which cannot be drawn as it is"
+        yield _finding(what, "junction", record.called, record.remedy, "note")
 
 
 def _no_circle(facts: RoadFacts, graph: LaneGraph) -> Iterator[Asked]:

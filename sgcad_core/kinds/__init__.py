@@ -4,6 +4,7 @@ from sgcad_core.kinds.actors import ACTORS, ActorRecord, actor_kind, kind_of_let
 from sgcad_core.kinds.junctions import (  # fmt: skip
     FOUR,
     FOUR_LEG,
+    GARAGE,
     GORE,
     INTERSECTIONS,
     JUNCTIONS,
@@ -32,6 +33,7 @@ __all__ = [
     "DRIVEWAY",
     "FOUR",
     "FOUR_LEG",
+    "GARAGE",
     "GORE",
     "INTERSECTIONS",
     "JOINING",

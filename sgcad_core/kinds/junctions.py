@@ -17,6 +17,7 @@ FOUR_LEG: Final = "four_leg"
 ROUNDABOUT: Final = "roundabout"
 PARKING_LOT: Final = "parking_lot"
 WORK_ZONE: Final = "work_zone"
+GARAGE: Final = "parking_garage"
 MEDIAN_OPENING: Final = "median_opening"
 GORE: Final = "gore"
 """Names of junctions and places for code that treats one of them apart; no other module spells them (a test looks)."""
@@ -69,32 +70,31 @@ INTERSECTIONS: tuple[str, ...] = tuple(one.layout for one in JUNCTIONS if one.la
 
 @dataclass(frozen=True)
 class Unsupported:
-    """A place that reports name and that cannot be drawn: a crash there is refused, or the network carries a note of
-    what it lacks. Its words are the vocabulary class `unsupported_place`, whose meanings are these kinds."""
+    """A place that reports name and that cannot be drawn as it is: the network carries a note of what it lacks.
+
+    Its words are the vocabulary class `unsupported_place`, whose meanings are these kinds.
+    """
 
     kind: str
     called: str
-    severity: Literal["refuse", "note"]
     remedy: str
 
 
 UNSUPPORTED: tuple[Unsupported, ...] = (
-    Unsupported("parking_garage", "a parking garage", "refuse", "leave the case out: no aisles or decks can be drawn"),
-    Unsupported("interchange", "an interchange", "note", "see that the ramp or the road of the crash is drawn"),
+    Unsupported(GARAGE, "a parking garage", "a level is drawn as a parking lot, without walls, pillars and ramps"),
+    Unsupported("interchange", "an interchange", "see that the ramp or the road of the crash is drawn"),
     Unsupported(
         WORK_ZONE,
         "a work zone",
-        "note",
         "the road is drawn without it: lanes that are closed are drawn on roads of two or more each way, off junctions",
     ),
     Unsupported(
         MEDIAN_OPENING,
         "an opening in the median",
-        "note",
         "the road is drawn without it: openings are drawn on roads without a junction",
     ),
-    Unsupported(GORE, "a gore area", "note", "the gore is drawn at its ramp; see that the vehicle or thing is in it"),
-    Unsupported("rail_crossing", "a railway crossing", "note", "the road is drawn without its rails"),
+    Unsupported(GORE, "a gore area", "the gore is drawn at its ramp; see that the vehicle or thing is in it"),
+    Unsupported("rail_crossing", "a railway crossing", "the road is drawn without its rails"),
 )
 
 

@@ -54,7 +54,7 @@ class Phrase:
     @property
     def definite(self) -> bool:
         """Whether the phrase names a known actor: "the", "this", a possessive, or no determiner."""
-        return (self.match["det"] or "the").lower() in ("the", "this", "its", "his", "her", "their")
+        return (self.match["det"] or "the").lower() in ("the", "this", "that", "its", "his", "her", "their")
 
     @property
     def head(self) -> str:

@@ -10,7 +10,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from sgcad_core.kinds import ALLEY, DRIVEWAY, FOUR_LEG, JUNCTIONS, RAMP, JunctionKind, T, junction_kind
+from sgcad_core.kinds import (
+    ALLEY,
+    DRIVEWAY,
+    FOUR_LEG,
+    GARAGE,
+    JUNCTIONS,
+    PARKING_LOT,
+    RAMP,
+    JunctionKind,
+    T,
+    junction_kind,
+)
 from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.junctions.approach_lanes import Approaches
 from sgcad_core.reading.junctions.control import Control, control_of, controlled, signed_legs
@@ -23,6 +34,7 @@ from sgcad_core.reading.junctions.junction_stem import (
     stem_of,
     stem_told,
 )
+from sgcad_core.reading.junctions.unsupported_places import unsupported_places
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.motion.motion_record import DRIVES, Source
@@ -113,6 +125,8 @@ def _kind(
     vehicles: Sequence[VehicleFacts],
     roads: Sequence[MergedRoad],
 ) -> tuple[JunctionKind, bool]:
+    if GARAGE in unsupported_places(statements):  # a level of it is drawn so
+        return PARKING_LOT, True
     named = _named(story)[0]
     access = any(v.origin in DRIVES or v.target in DRIVES for v in vehicles)
     if in_gores(story) and named in ("none", "some"):
@@ -205,4 +219,6 @@ def _one_sided(story: Sequence[Statement], roads: Sequence[MergedRoad]) -> bool:
 
 
 def _turning(vehicles: Sequence[VehicleFacts]) -> bool:
-    return any(v.maneuver in ("turn_left", "turn_right") for v in vehicles)
+    """Whether a vehicle turns, or drives in a lane that is for turns: such a lane ends at a junction."""
+    turns = ("turn_left", "turn_right")
+    return any(v.maneuver in turns or v.lane_word in ("left_turn", "right_turn") for v in vehicles)

@@ -146,11 +146,12 @@ def _until_stopped(text: str, after: bool) -> str:
 
 
 def _until_hit(text: str) -> str:
-    """The part before the contact: what follows it is the effect, not the approach."""
+    """The part before the contact, with what is told to be done at it: what follows is the effect, not the approach."""
     for m in HIT.finditer(text):
         if not rule("motion_reader.no_hit").search(text[: m.start()]):
             moving = rule("motion_reader.moving_hit").match(m.group())
-            return text[: m.end() if moving else m.start()]
+            meanwhile = rule("motion_reader.while_hitting").search(text, m.end())
+            return text[: m.end() if moving else m.start()] + (f", {meanwhile.group()}" if meanwhile else "")
     return text
 
 

@@ -27,7 +27,11 @@ def named_in_full(text: TracedText) -> TracedText:
     numbered = bool(rule("common.vehicle").search(text.text))
     for spelling in of_role("study_spelling"):
         text = text.sub(spelling, spelling.yields["to"])
-    return text.sub(rule("near_names.whole"), "V1") if numbered else text
+    if not numbered:
+        return text
+    text = text.sub(rule("near_names.whole"), "V1")
+    alone = {m.group() for m in rule("common.vehicle").finditer(text.text)} == {"V1", "V2"}
+    return text.sub(rule("near_names.other_whole"), "V2") if alone else text
 
 
 def tells_first_person(text: str) -> bool:

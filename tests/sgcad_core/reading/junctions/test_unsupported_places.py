@@ -1,11 +1,8 @@
-"""A crash at a place that cannot be drawn is refused by name; one mentioned in passing changes nothing."""
+"""A crash at a place that cannot be drawn as it is is noted; a place mentioned in passing changes nothing."""
 
 import pytest
 
-from plugins.road_writer.template import Template
-from sgcad_core.case.records import Context
-from sgcad_core.errors import Refused
-from sgcad_core.reading.junctions.unsupported_places import refuse_unsupported
+from sgcad_core.kinds import PARKING_LOT
 from sgcad_core.reading.language import of_role
 from sgcad_core.reading.reading import read
 
@@ -31,15 +28,8 @@ def test_a_place_mentioned_in_passing_has_no_effect(text: str) -> None:
     assert read(text).roads.junction.unsupported == ()
 
 
-def test_a_parking_garage_is_refused_by_name() -> None:
-    text = next(iter(AT))
-    with pytest.raises(Refused, match="the crash happened at a parking garage, which cannot be drawn yet") as raised:
-        Template().write(Context(narrative=text), (), (), ask=None, attempt=1)  # type: ignore[arg-type]
-    assert raised.value.missing == ("leave the case out: no aisles or decks can be drawn",)
-
-
-def test_a_place_whose_road_can_be_drawn_is_not_refused() -> None:
-    refuse_unsupported(("rail_crossing", "interchange"))
+def test_a_level_of_a_parking_garage_is_drawn_as_a_parking_lot() -> None:
+    assert read(next(iter(AT))).roads.junction.kind == PARKING_LOT
 
 
 @pytest.mark.parametrize("rule", of_role("unsupported"), ids=lambda rule: rule.id)
