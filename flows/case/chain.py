@@ -27,7 +27,7 @@ from sgcad_core.records.edits import Edit
 from sgcad_core.result import CaseRecord, account_so_far
 
 T = TypeVar("T")
-_COURSE = ("report", "outcomes", "execution", "judgement", "metrics")
+_COURSE = ("report", "read_by", "outcomes", "execution", "judgement", "metrics")
 """Fields of a run that follow from its reading of the report."""
 
 
@@ -46,6 +46,10 @@ class CaseRun:
     """By stage, a model's former answer to this case; the model is not asked again."""
     as_read: dict[str, Any] | None = None
     """The specs before the first edit, where they are known."""
+    hold_to: readings.ReadBy | None = None
+    """The readers whose reading is taken whatever others have; None: the one whose scenario misses least."""
+    read_by: readings.ReadBy = "all"
+    """The readers whose reading the scenario is from."""
     report: CrashReport | None = None
     outcomes: dict[str, StageOutcome] = field(default_factory=dict)
     execution: Execution | None = None
@@ -82,6 +86,8 @@ class CaseRun:
         report = self._call("read", self.calls.read)
         if self.config.second_opinion:
             report = self._call("opinion", self.calls.opinion, report)
+        if self.hold_to and self.hold_to != "all":
+            report, self.read_by = Held(readings.read_by(report.value, self.hold_to)), self.hold_to
         informed = person_facts.with_person_facts(report.value, self.case.source, self.edits)
         if informed.edits:
             report = Held(informed)
@@ -90,27 +96,27 @@ class CaseRun:
         if both is None and any(fact.basis == "model" for fact in report.value.reading.facts):
             note = "the second opinion led to no scenario: the rules' reading stands"
             alone = {"opinion": None, "notes": (*report.value.notes, note)}
-            self.report = report.value.model_copy(update=alone)
+            self.report, self.read_by = report.value.model_copy(update=alone), "rules"
             return self._both(Held(self.report))
         return both
 
     def _try_other_readings(self) -> None:
         """Take another reading of the report whose scenario has more of what is told, if that of all readers lacks
         something."""
-        if self.report is None or not readings.has_others(self.report):
+        if self.hold_to or self.report is None or not readings.has_others(self.report):
             return
         first = account_so_far(self.record())
         least = readings.missed(first)
-        for name, report in readings.other_readings(self.report) if least else ():
+        for readers, report in readings.other_readings(self.report) if least else ():
             kept = {key: getattr(self, key) for key in _COURSE}
-            self.report, self.outcomes, self.execution, self.metrics = report, {}, None, None
+            self.report, self.read_by, self.outcomes, self.execution, self.metrics = report, readers, {}, None, None
             with suppress(InvalidOutput, SimulationFailed):
                 if both := self._both(Held(report)):
                     self._execute(*both)
             made = account_so_far(self.record())
             if readings.missed(made) < least:
                 least = readings.missed(made)
-                told = (*report.notes, readings.note_of(name, made, first))
+                told = (*report.notes, readings.note_of(readers, made, first))
                 self.report = report.model_copy(update={"notes": told})
             else:
                 vars(self).update(kept)
@@ -197,7 +203,7 @@ class CaseRun:
         """The specs that the case would have without its edits; None where there are no edits."""
         if self.as_read is None and self.report and self.report.edits:
             answers = person_facts.kept_answers(self.outcomes)
-            unedited = CaseRun(self.config, self.case, edits=(), answers=answers)
+            unedited = CaseRun(self.config, self.case, edits=(), answers=answers, hold_to=self.read_by)
             with suppress(SgcadError):
                 unedited.written()
             return person_facts.specs_of(unedited.record())

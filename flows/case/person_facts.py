@@ -1,6 +1,6 @@
 """A person's facts in a case: read beside its report, applied to what writers write; model answers that are kept.
 
-specs.json   in a case's folder: the current specs, and the attempt of each stage that they are from
+specs.json   in a case's folder: the current specs, the attempt of each stage that they are from, whose reading was kept
 .source      path of its report, relative to the folder, so that it can be revised
 """
 
@@ -16,6 +16,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from flows.case.facts_journal import settled
+from flows.case.readings import ReadBy
 from sgcad_core.asking.refine import Artifact, Write
 from sgcad_core.case.records import (
     Attempt,
@@ -140,13 +141,16 @@ class Specs:
     kept: Mapping[str, int] = field(default_factory=dict)
     as_read: dict[str, Any] | None = None
     """The content of specs.json before the first edit, where there is one."""
+    read_by: ReadBy | None = None
+    """The readers whose reading was kept; None in folders of earlier versions."""
 
 
 def read_specs(folder: Path) -> Specs:
     """The specs that a case's folder keeps. Raises BadInput where there are none, or none that can be read."""
     try:
         raw = json.loads(read_regular(folder / SPECS, folder))
-        return Specs(*_validated(raw["road"], raw["behavior"]), dict(raw["kept"]), raw.get("as_read"))
+        specs = _validated(raw["road"], raw["behavior"])
+        return Specs(*specs, dict(raw["kept"]), raw.get("as_read"), raw.get("read_by"))
     except (BadInput, ValueError, KeyError, TypeError, RecursionError) as fault:
         raise BadInput(
             f"{folder}: no {SPECS} that can be read ({type(fault).__name__}): run the case again with this version"

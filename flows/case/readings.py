@@ -2,17 +2,25 @@
 
 Field by field the surer reader is taken (sgcad_core/reading/second_reader); whether the values go together shows only
 in the scenario. So where that lacks something, the other readings are tried too, and the one whose scenario has most of
-what is told is kept. Knows reports and accounts; no steps.
+what is told is kept. A case that a person mends holds to the reading that was kept before. Knows reports and accounts;
+no steps.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Literal
 
 from sgcad_core.account import Account
 from sgcad_core.case.records import CrashReport
 
-RULES, LEARNED = "the rules' reading", "the reading of the rules and the learned reader"
+ReadBy = Literal["all", "learned", "rules"]
+"""Readers of a reading: all of them, the rules with the learned one, the rules alone."""
+_CALLED: dict[ReadBy, str] = {
+    "all": "the reading of all readers",
+    "learned": "the reading of the rules and the learned reader",
+    "rules": "the rules' reading",
+}
 _MANY = 3
 """Vehicles of a crash of which other readings are tried at most."""
 
@@ -24,15 +32,25 @@ def has_others(report: CrashReport) -> bool:
     return any(fact.basis == "model" for fact in report.reading.facts)
 
 
-def other_readings(report: CrashReport) -> Iterator[tuple[str, CrashReport]]:
-    """(name, report) of each other reading of a report with a second reader's opinion; none twice."""
-    opinion, seen = report.opinion, [report.reading.facts]
-    learned = [(LEARNED, opinion.model_copy(update={"answered": None}))] if opinion and opinion.guesses else []
-    for name, said in (*learned, (RULES, None)):
-        other = report.model_copy(update={"opinion": said})
+def read_by(report: CrashReport, readers: ReadBy) -> CrashReport:
+    """The report as so many of its readers have it."""
+    opinion = report.opinion
+    if opinion is None or readers == "all":
+        return report
+    learned = opinion.model_copy(update={"answered": None}) if readers == "learned" and opinion.guesses else None
+    return report.model_copy(update={"opinion": learned})
+
+
+def other_readings(report: CrashReport) -> Iterator[tuple[ReadBy, CrashReport]]:
+    """(readers, report) of each other reading of a report with a second reader's opinion; none twice."""
+    seen = [report.reading.facts]
+    learned = report.opinion is not None and report.opinion.guesses
+    others: tuple[ReadBy, ...] = ("learned", "rules") if learned else ("rules",)
+    for readers in others:
+        other = read_by(report, readers)
         if other.reading.facts not in seen:
             seen.append(other.reading.facts)
-            yield name, other
+            yield readers, other
 
 
 def missed(account: Account) -> float:
@@ -42,7 +60,9 @@ def missed(account: Account) -> float:
     return float(sum(item.kind in ("lacks", "contradicts", "guessed") for item in account.items))
 
 
-def note_of(name: str, kept: Account, before: Account) -> str:
+def note_of(readers: ReadBy, kept: Account, before: Account) -> str:
     """The remark that another reading than the fused one was kept."""
     was = "came to no scenario" if before.verdict == "none" else f"misses {missed(before):.0f}"
-    return f"{name} is kept: its scenario misses {missed(kept):.0f} of what is told, that of all readers {was}"
+    return (
+        f"{_CALLED[readers]} is kept: its scenario misses {missed(kept):.0f} of what is told, that of all readers {was}"
+    )

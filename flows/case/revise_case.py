@@ -245,7 +245,8 @@ def _written(
 ) -> Revised:
     """Run the case with other edits; keep edits and results, or neither."""
     as_read = _as_read(case, before) if after else None
-    run = CaseRun(case.config, case.case, edits=after, answers=_kept(case), as_read=as_read)
+    hold_to = case.specs.read_by
+    run = CaseRun(case.config, case.case, edits=after, answers=_kept(case), as_read=as_read, hold_to=hold_to)
     run.go()
     findings = findings_of(run)
     result = run.result = result_of(run.record())

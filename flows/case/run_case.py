@@ -110,7 +110,7 @@ def write_files(run: CaseRun, folder: Path) -> dict[str, Any]:
     result["seconds"] = seconds_of(record)  # with those of the drawing
     if run.keys:
         result["shared"] = run.shared
-    specs = person_facts.specs_of(record, run.read_alone())
+    specs = person_facts.specs_of(record, run.read_alone()) | {"read_by": run.read_by}
     result["person"] = person_facts.disagreement(specs, run.report.edits if run.report else ())
     case_folder.write_json(folder / person_facts.SPECS, specs)
     case_folder.write_json(folder / FILE, [step.told() for step in run.log.steps])

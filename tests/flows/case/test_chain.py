@@ -5,6 +5,8 @@ import json
 
 import pytest
 
+from flows.batch import config_folder
+from flows.case import revise_case
 from flows.case.chain import CaseRun
 from flows.case.run_case import run_case
 from flows.case_files import case_folder
@@ -238,6 +240,22 @@ def test_the_rules_reading_is_kept_where_the_scenario_of_both_readers_misses_mor
     )
     assert all(fact["basis"] != "model" for fact in result["facts"])
     assert any("the rules' reading is kept: its scenario misses" in str(note) for note in result["notes"])
+
+
+def test_a_mended_case_holds_to_the_reading_that_was_kept(monkeypatch, tmp_path):
+    second_reader_says(monkeypatch, "turn_left")
+    by_two_readers(
+        tmp_path,
+        "The AV was traveling north on Main Street. An SUV, traveling south in the opposite direction, struck the "
+        "front of the AV with its front bumper.",
+    )
+    folder = tmp_path / "out" / "template" / "c1"
+    assert json.loads((folder / "specs.json").read_text())["read_by"] == "rules"
+    config_folder.write(folder.parent, load(settings.ROOT / "configs" / "template.yaml", ("second_opinion=learned",)))
+    revised = revise_case.revise(folder, {"V1.speed_mph": "30"}).result
+    assert {a["id"]: a["maneuver"] for a in revised["actors"]} == {"V1": "straight", "V2": "straight"}
+    assert all(fact["basis"] != "model" for fact in revised["facts"])
+    assert not any("is kept: its scenario misses" in str(note) for note in revised["notes"])
 
 
 def test_a_models_answers_to_the_whole_report_join_the_reading(monkeypatch, tmp_path):
