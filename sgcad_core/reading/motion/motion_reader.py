@@ -22,6 +22,7 @@ from sgcad_core.reading.motion.heading_lane_cues import (
 )
 from sgcad_core.reading.motion.maneuver_cues import read_maneuver_cues
 from sgcad_core.reading.motion.motion_record import ManeuverCue, VehicleMotion
+from sgcad_core.reading.roads.street_names import driven_on
 from sgcad_core.reading.text.sentence_roles import HIT, Role
 from sgcad_core.reading.text.speeds import read_speed, read_speeds_beside
 
@@ -69,7 +70,9 @@ def read_motions(
             read_critical_event(found, t, roster)
     if not roster.counted:
         read_speeds_beside(found, [t for t in statements if t.role not in _UNREAD])
-    for motion in found.values():
+    streets = driven_on(statements)
+    for v, motion in found.items():
+        motion.street = streets.get(v)
         _hear_interview(motion)
     return found
 

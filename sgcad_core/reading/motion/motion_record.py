@@ -78,6 +78,8 @@ class VehicleMotion:
     origin: Access | None = None
     target: Access | None = None
     from_side: Literal["left", "right"] | None = None
+    street: str | None = None
+    """The name of the street that it is first told to drive on."""
     entered: Compass | None = None
     """The way of the traffic into whose lanes it came."""
     sources: dict[str, Source] = field(default_factory=dict)

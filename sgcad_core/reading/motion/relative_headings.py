@@ -25,6 +25,8 @@ QUARTERS = (0, 90, 180, 270)
 
 _TOLD, _IN_LINE = 0.6, 1.0
 """Shares of the weight of a told relation; one behind the other drive one way whatever touches."""
+_STREET = 2.0
+"""That both are told by name to drive on one street, or on two."""
 
 
 def relative(crash: CrashTold, inferred: CrashInferred, a: str, b: str, pairs: list[ContactMention]) -> int:
@@ -62,6 +64,10 @@ def _add_relations(score: dict[int, float], crash: CrashTold, a: str, b: str) ->
             if other == you and not (words == "behind" and _on_foot(crash, a, b)):  # "ran from behind V2"
                 for q in {"same": (0,), "opposite": (180,), "crossing": (90, 270)}[relation]:
                     score[q] += (_IN_LINE if words in ("behind", "ahead") else _TOLD) * weight
+    on = [crash.motions[v].street for v in (a, b)]
+    if all(on):
+        for q in (0, 180) if on[0] == on[1] else (90, 270):
+            score[q] += _STREET
     for me, sign in ((a, 1), (b, -1)):
         side = crash.motions[me].from_side
         if side:

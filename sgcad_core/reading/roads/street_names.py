@@ -70,6 +70,17 @@ def street_names(statements: Iterable[Statement], headings: Mapping[str, Compass
     return StreetNames(axes, pattern)
 
 
+def driven_on(statements: Iterable[Statement]) -> dict[str, str]:
+    """The name of the street that each vehicle is first told to drive on, of those of which one is told."""
+    told = list(statements)
+    streets, found = street_names(told, {}), dict[str, str]()
+    for text in (t.text for t in told if t.role in STORY_ROLES):
+        for one in streets.in_text(text):
+            if driver := rule("street_names.driven").search(text[: one.start]):
+                found.setdefault(driver["vehicle"], one.name)
+    return found
+
+
 def _in_text(pattern: re.Pattern[str] | None, text: str) -> Iterator[StreetMention]:
     if pattern is not None:
         for m in pattern.finditer(text):
