@@ -34,6 +34,8 @@ def number_actors(text: TracedText) -> TracedText:
     """The normalized text with a number for every actor; unchanged if there is any number."""
     if has_actor_numbers(text.text):
         return text
+    if rule("references.system_drives").search(text.text):
+        text = text.sub(rule("references.system"), lambda m: f"{m['the']} ADS vehicle{m['owner'] or ''}")
     automated = any(m["automated"] for m in _PHRASE.finditer(text.text))
     if not automated and (name := _company(text.text)):
         text, automated = text.sub(rule("references.of_company").given(name=re.escape(name)), rf"{name} AV"), True

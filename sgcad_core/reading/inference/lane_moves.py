@@ -78,11 +78,13 @@ def _hand_between(motion: VehicleMotion) -> Hand | None:
 
 
 def _told_hand(motion: VehicleMotion, words: str) -> Hand | None:
-    """The hand of a lane change by its own words, or by the numbers of both lanes; None where neither tells it."""
+    """The hand of a lane change by its words, or by the lanes that it leaves and enters; None if neither tells it."""
     hands = {m[0].lower() for m in rule("deeds.hand").finditer(words)}
     if len(hands) == 1:
         return "left" if hands == {"left"} else "right"
     start, end = motion.lane, motion.to_lane
+    if start is None and motion.lane_word is None and end in ("left", "right"):
+        return "left" if end == "left" else "right"
     if start is None or not isinstance(end, int) or start == end or (start < 0) != (end < 0):
         return None
     return "left" if end > start else "right"
