@@ -74,19 +74,16 @@ Learned = Mapping[str, Kind]
 
 
 def contest(
-    values: Sequence[str], shares: tuple[Floats, Floats], own: str | None, told: float, may: Sequence[str] | None = None
+    values: Sequence[str], shares: Sequence[Floats], own: str | None, told: float, may: Sequence[str] | None = None
 ) -> Contest | None:
-    """Of two readers' probabilities of all answers; None where no other answer is known, or open (`may`)."""
-    both, alone = shares
+    """Of some readers' probabilities of all answers; None where no other answer is known, or open (`may`)."""
     ours = [i for i, value in enumerate(values) if same(value, own)]
     others = [i for i, value in enumerate(values) if i not in ours and (may is None or value in may)]
     if not others:
         return None
-    best = max(others, key=lambda i: _logit(float(both[i])) + _logit(float(alone[i])))
-    mine = float(both[ours].sum()), float(alone[ours].sum())
-    ratios = tuple(
-        math.log(max(a, _EDGE) / max(b, _EDGE)) for a, b in zip((both[best], alone[best]), mine, strict=True)
-    )
+    best = max(others, key=lambda i: sum(_logit(float(one[i])) for one in shares))
+    mine = tuple(float(one[ours].sum()) for one in shares)
+    ratios = (math.log(max(float(one[best]), _EDGE) / max(b, _EDGE)) for one, b in zip(shares, mine, strict=True))
     return Contest(values[best], (1.0, *ratios, float(told == 1.0), float(0 < told < 1)), (1.0, *map(_logit, mine)))
 
 
