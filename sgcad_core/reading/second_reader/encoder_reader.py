@@ -154,7 +154,7 @@ def marks(ids: Rows, subjects: Rows, vehicle: int) -> Rows:
 
 def _gelu(x: Floats) -> Floats:
     """Gaussian error linear units, by the tanh form of Hendrycks and Gimpel (2016)."""
-    found: Floats = 0.5 * x * (1 + np.tanh(np.float32(np.sqrt(2 / np.pi)) * (x + np.float32(0.044715) * x**3)))
+    found: Floats = 0.5 * x * (1 + np.tanh(np.float32(np.sqrt(2 / np.pi)) * (x + np.float32(0.044715) * x * x * x)))
     return found
 
 
