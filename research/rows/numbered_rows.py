@@ -20,7 +20,7 @@ from research.rows.coded_incidents import by_hash
 from sgcad_core.reading.reading import Reading
 from sgcad_core.reading.second_reader.field_claims import kind_of
 from sgcad_core.reading.second_reader.learned_reader import hashed
-from sgcad_core.reading.second_reader.learned_reader_features import account_of
+from sgcad_core.reading.second_reader.learned_reader_features import Account, account_of
 from sgcad_core.reading.second_reader.numbered_questions import Question, first_contact, questions, same
 
 APART_OF = 10
@@ -85,7 +85,11 @@ def part_of(case: Mapping[str, Any]) -> str:
 
 def rows_of(case: Mapping[str, Any]) -> list[Row]:
     """The questions of a line that its codes answer."""
-    account = account_of(case["text"])
+    return rows_of_account(case, account_of(case["text"]))
+
+
+def rows_of_account(case: Mapping[str, Any], account: Account) -> list[Row]:
+    """The same where its text has been read."""
     codes = codes_of(case, account.reading)
     return [_row(case, one, codes[one.field]) for one in questions(account) if one.field in codes]
 

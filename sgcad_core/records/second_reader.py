@@ -29,6 +29,8 @@ WEIGHTS = Path(__file__).parents[1] / "reading" / "second_reader" / "learned.npz
 """What that reader learned."""
 NUMBERED_WEIGHTS = WEIGHTS.with_name("numbered.npz")
 """What the reader of numbered reports learned (`sgcad_core.reading.second_reader.numbered_reader`)."""
+ENCODER_WEIGHTS = WEIGHTS.with_name("encoder.npz")
+"""What the encoder learned that is heard beside it (`sgcad_core.reading.second_reader.encoder_reader`)."""
 
 
 class Weights(Record):

@@ -43,8 +43,6 @@ FOREIGN_SHARE = 0.02
 """Share of the questions set apart that are as foreign as the first of which nothing is said."""
 SMALL = 0.002
 """A feature is left out whose weights are all smaller than that share of the largest one."""
-SIGNS = (0, 1, 1, -1, -1)
-"""What the judge's figures may be: surer readers are no less likely right, what the text tells no more likely wrong."""
 Floats = NDArray[np.float64]
 
 
@@ -96,6 +94,11 @@ def say(kind: Kind, rows: Sequence[Row]) -> tuple[Floats, Floats]:
 
 
 # ------------------------------------------------------------------ judge
+def signs(readers: int) -> tuple[int, ...]:
+    """Signs of a judge's figures: surer readers are no less likely right, what the text tells no more likely wrong."""
+    return 0, *(1,) * readers, -1, -1
+
+
 class Judged(NamedTuple):
     """One question: what stands beside the rules' own answer, and which of both are right."""
 
@@ -115,8 +118,10 @@ class Judge(NamedTuple):
     def of(some: Sequence[Judged]) -> Judge:
         """From questions that the readers did not learn from."""
         differ = [one for one in some if one.rule_right != one.other_right]
-        change = _figures([one.contest.change for one in differ], [one.other_right for one in differ], SIGNS)
-        return Judge(change, _figures([one.contest.keep for one in some], [one.rule_right for one in some], SIGNS[:3]))
+        may = signs(len(some[0].contest.keep) - 1) if some else signs(2)
+        change = _figures([one.contest.change for one in differ], [one.other_right for one in differ], may)
+        keep = _figures([one.contest.keep for one in some], [one.rule_right for one in some], may[:-2])
+        return Judge(change, keep)
 
     def decides(self, one: Judged) -> tuple[float, bool, bool]:
         """How sure, whether that is right, and whether the rules give way."""
@@ -126,17 +131,18 @@ class Judge(NamedTuple):
         return probability(self.keep, one.contest.keep), one.rule_right, False
 
 
-def _figures(of: Sequence[Sequence[float]], marks: Sequence[bool], signs: Sequence[int]) -> tuple[float, ...]:
-    found = logistic(np.array(of, dtype=float).reshape(-1, len(signs)), np.array(marks, dtype=float), signs)
+def _figures(of: Sequence[Sequence[float]], marks: Sequence[bool], may: Sequence[int]) -> tuple[float, ...]:
+    found = logistic(np.array(of, dtype=float).reshape(-1, len(may)), np.array(marks, dtype=float), may)
     return tuple(round(float(one), 4) for one in found)
 
 
-def judged(kind: Kind, rows: Sequence[Row]) -> list[Judged]:
-    """Questions with what stands beside the rules' answers."""
+def judged(kind: Kind, rows: Sequence[Row], third: Sequence[Floats] | None = None) -> list[Judged]:
+    """Questions with what stands beside the rules' answers; `third`: what one more reader gives to every answer."""
     values = tuple(map(str, kind.field.values))
+    voices = (*say(kind, rows), *((third,) if third is not None else ())) if rows else ()
     found = []
-    for one, both, alone in zip(rows, *say(kind, rows), strict=True) if rows else ():
-        if (beside := contest(values, (both, alone), one.rule, one.told, one.may)) is not None:
+    for one, *shares in zip(rows, *voices, strict=True) if rows else ():
+        if (beside := contest(values, shares, one.rule, one.told, one.may)) is not None:
             found.append(Judged(one, beside, one.rules_right, one.right(beside.other)))
     return found
 

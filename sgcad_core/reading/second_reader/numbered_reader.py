@@ -1,5 +1,8 @@
 """A reader of numbered reports that learned from coded ones where the rules err: two linear readers and a judge a kind.
 
+Of the kinds in which it adds to them an encoder that reads the whole report is heard, too
+(`sgcad_core.reading.second_reader.encoder_reader`); their judges have one log ratio more.
+
 Kinds of questions and their features are those of `sgcad_core.reading.second_reader.numbered_questions`, readers and
 files those of `sgcad_core.reading.second_reader.learned_reader`: one reader sees the words and what the rules made of
 them, the other one the words alone. Beside the rules' answer stands the likeliest other one; that it is right where
@@ -25,6 +28,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sgcad_core.reading.second_reader import encoder_reader
+from sgcad_core.reading.second_reader.encoder_reader import Encoder, Judge, answers
+from sgcad_core.reading.second_reader.encoder_tokens import narrative_of
 from sgcad_core.reading.second_reader.field_claims import kind_of
 from sgcad_core.reading.second_reader.learned_reader import (
     Field,
@@ -74,19 +80,16 @@ Learned = Mapping[str, Kind]
 
 
 def contest(
-    values: Sequence[str], shares: tuple[Floats, Floats], own: str | None, told: float, may: Sequence[str] | None = None
+    values: Sequence[str], shares: Sequence[Floats], own: str | None, told: float, may: Sequence[str] | None = None
 ) -> Contest | None:
-    """Of two readers' probabilities of all answers; None where no other answer is known, or open (`may`)."""
-    both, alone = shares
+    """Of some readers' probabilities of all answers; None where no other answer is known, or open (`may`)."""
     ours = [i for i, value in enumerate(values) if same(value, own)]
     others = [i for i, value in enumerate(values) if i not in ours and (may is None or value in may)]
     if not others:
         return None
-    best = max(others, key=lambda i: _logit(float(both[i])) + _logit(float(alone[i])))
-    mine = float(both[ours].sum()), float(alone[ours].sum())
-    ratios = tuple(
-        math.log(max(a, _EDGE) / max(b, _EDGE)) for a, b in zip((both[best], alone[best]), mine, strict=True)
-    )
+    best = max(others, key=lambda i: sum(_logit(float(one[i])) for one in shares))
+    mine = tuple(float(one[ours].sum()) for one in shares)
+    ratios = (math.log(max(float(one[best]), _EDGE) / max(b, _EDGE)) for one, b in zip(shares, mine, strict=True))
     return Contest(values[best], (1.0, *ratios, float(told == 1.0), float(0 < told < 1)), (1.0, *map(_logit, mine)))
 
 
@@ -101,30 +104,42 @@ def takes(told: float) -> float:
 
 
 # ------------------------------------------------------------------ asked
-def guesses(narrative: str, learned: Learned | None = None) -> Mapping[str, Guess]:
-    """What the reader says of each question of a numbered report; nothing of others."""
-    learned = load() if learned is None else learned
-    some = questions(account_of(narrative))
-    return {one.field: found for one in some if (found := _guess(one, learned.get(kind_of(one.field))))}
+def guesses(narrative: str, learned: Learned | None = None, encoder: Encoder | None = None) -> Mapping[str, Guess]:
+    """What the reader says of each question of a numbered report; nothing of others. Both None: with the shipped
+    encoder."""
+    if learned is None:
+        learned, encoder = load(), encoder_reader.load() if encoder is None else encoder
+    account = account_of(narrative)
+    some = [one for one in questions(account) if kind_of(one.field) in learned]
+    heard: Mapping[str, NDArray[np.float32]] = {}
+    if encoder is not None and some:
+        asked = [one.field for one in some if kind_of(one.field) in encoder.judges]
+        heard = answers(encoder, narrative_of(account), asked)
+    found = {}
+    for one in some:
+        third = heard.get(one.field)
+        judge = encoder.judges[kind_of(one.field)] if encoder is not None and third is not None else None
+        if (said := _guess(one, learned[kind_of(one.field)], third, judge)) is not None:
+            found[one.field] = said
+    return found
 
 
-def _guess(one: Question, kind: Kind | None) -> Guess | None:
-    if kind is None:
-        return None
+def _guess(one: Question, kind: Kind, third: NDArray[np.float32] | None, judge: Judge | None) -> Guess | None:
     words = hashed(one.words)
     if kind.knows(words) < kind.least_known:
         return None
-    both, alone = shares(kind, words, hashed(one.readings))
+    voices = (*shares(kind, words, hashed(one.readings)), *((third,) if third is not None else ()))
     values = tuple(map(str, kind.field.values))
-    found = contest(values, (both, alone), one.rule, one.told, one.may)
+    found = contest(values, voices, one.rule, one.told, one.may)
     if found is None:
         return None
-    p = probability(kind.field.change, found.change)
+    change, keeps = (kind.field.change, kind.field.keep) if judge is None else judge
+    p = probability(change, found.change)
     taken = p >= takes(one.told)
-    mean = np.sqrt(both * alone)
+    mean = np.prod(voices, axis=0) ** (1 / len(voices))
     odds = {value: round(float(share), 5) for value, share in zip(values, mean / mean.sum(), strict=True)}
     return Guess(
-        value=found.other if taken else None, p=p if taken else probability(kind.field.keep, found.keep),
+        value=found.other if taken else None, p=p if taken else probability(keeps, found.keep),
         shares=odds, sentence=_sentence(one, kind, values.index(found.other)) if taken else None,
     )  # fmt: skip
 
