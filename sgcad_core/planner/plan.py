@@ -21,6 +21,7 @@ from sgcad_core.planner.aftermath.second_contact import MISSED
 from sgcad_core.planner.aftermath.struck_objects import Strike
 from sgcad_core.planner.aftermath.told_order import ToldOrder, met_in_order, pair_of
 from sgcad_core.planner.bystanders import place_clear
+from sgcad_core.planner.company import stand_ahead, with_company
 from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.meeting_place import Place, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option
@@ -84,7 +85,7 @@ def plan(
     """
     behavior = into_gores(behavior)
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
-    lines = {a.id: course_of(graph, a, gentle) for a in behavior.actors}
+    lines = with_company(behavior, {a.id: course_of(graph, a, gentle) for a in behavior.actors})
     conflicts = Conflicts(behavior, lines, may_skid, by_force, courses)
     cast = _Cast(behavior, lines, tractors(behavior), courses, [note for line in lines.values() for note in line.notes])
     contacts, near = cast.contacts, behavior.near_crash
@@ -277,7 +278,8 @@ class _Cast:
         for actor in self.behavior.actors:
             if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in self.things | aside:
                 continue
-            if note := place_clear(scene, self.role(actor.id) if self.possible else self.alone(actor.id)):
+            ahead = stand_ahead(scene, actor, self.behavior, self.courses)
+            if not ahead and (note := place_clear(scene, (self.role if self.possible else self.alone)(actor.id))):
                 self.notes.append(note)
             track = scene.tracks[actor.id]
             own = track.own_s if track.motion.standing else track.own_s + scene.contact * STEP_S
