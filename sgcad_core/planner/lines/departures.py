@@ -84,6 +84,8 @@ def aside_m(course: Course, side: int) -> float:
 def on_the_road(course: Course, left_m: Floats) -> NDArray[np.bool_]:
     """(n,) whether offsets from its line are still within the edges of the road."""
     within: NDArray[np.bool_] = (left_m < course.left_edge_m) & (-left_m < course.right_edge_m)
+    if course.median_m <= _LEAST_MEDIAN_M:  # the lines between two directions are none
+        return within
     median = (left_m > course.own_left_m) & (left_m < course.own_left_m + course.median_m)
     return within & ~median
 
