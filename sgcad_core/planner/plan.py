@@ -37,7 +37,7 @@ from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.departures import departs, departure_station
 from sgcad_core.planner.lines.gore_lines import into_gores
 from sgcad_core.planner.lines.maneuver_course import course_of
-from sgcad_core.planner.lines.told_moves import with_room
+from sgcad_core.planner.lines.told_moves import off_and_back, with_room
 from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
 from sgcad_core.planner.motion import STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.scene import AFTER_S, Scene
@@ -48,8 +48,7 @@ from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.surface import road_surface
 
 _FURTHER_S, _EACH_S, _MOST_S = 3.0, 0.8, 7.0
-"""Additional time after the first contact where an actor goes on far, for each contact from the third on, and at
-most."""
+"""Additional time after the first contact where an actor goes on far, for each contact from the third on, at most."""
 _TOLD_S_PER_M = 0.14
 """Time for a told distance to the rest: slowed evenly from 14 m/s."""
 _MANEUVER_MISSED = 3.0
@@ -84,6 +83,7 @@ def plan(
     turn against their direction before they touch. Not `by_force`: without slides and the longest search.
     """
     behavior = into_gores(behavior)
+    courses = off_and_back(courses, (s.by for s in struck_before(behavior, behavior.contacts) if s.thing.firm))
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
     lines = with_company(behavior, {a.id: course_of(graph, a, gentle) for a in behavior.actors})
     conflicts = Conflicts(behavior, lines, may_skid, by_force, courses)

@@ -18,6 +18,8 @@ from sgcad_core.planner.lines.crossing import LEAVES, crossings, end_meets_flank
 from sgcad_core.planner.lines.departures import (
     DEPARTURES,
     GENTLY,
+    LONG_AT_M,
+    OFF_ROAD_M,
     SWERVE_MPS2,
     aside_m,
     departs,
@@ -142,7 +144,7 @@ def _departures(role: Role, *, fine: bool) -> list[Drift]:
     found: list[Drift] = []
     sides = departure_sides(role.course, role.place.station_m, role.told.departs or "either")
     for rank, side in enumerate(sides):
-        wide = aside_m(role.course, side)
+        wide = aside_m(role.course, side, LONG_AT_M if role.other_long else OFF_ROAD_M)
         for share, cost, ease in _eased(shares):
             drift = _drift(role, wide * share, cost + _OTHER_SIDE * rank, ease)
             found.append(half_gone(role, drift, ease) if role.other_long else still_leaving(role, drift, ease))
