@@ -110,7 +110,10 @@ def _to_parked(role: Role) -> list[Drift]:
         return []
     aside, touch = role.place.aside_m, (role.size[1] + role.other_width_m) / 2
     reach = [(abs(aside) - touch + share * role.size[1], cost) for share, cost in _OVERLAPS]
-    return [_drift(role, math.copysign(left, aside), cost, 1.7, PARKED_THERE) for left, cost in reach if left > 0]
+    lines = [_drift(role, math.copysign(left, aside), cost, 1.7, PARKED_THERE) for left, cost in reach if left > 0]
+    if role.actor.maneuver == "backing" and abs(math.sin(role.place.angle_rad)) < 0.5:  # it was parked in that row
+        return [*(one._replace(length_m=1.0, end_m=-1e4) for one in lines), *_behind(lines, lines)]
+    return lines
 
 
 def _steep(role: Role) -> list[Drift]:
