@@ -45,9 +45,11 @@ def with_company(behavior: BehaviorSpec, reading: Reading) -> BehaviorSpec:
         return behavior
     actors = list(behavior.actors)
     pair = [a for name in (first.struck, first.striker) for a in actors if a.id == name]
+    lanes = {(a.road, a.direction, a.lane) for a in pair}
+    row = [*pair, *(a for a in actors if a not in pair and (a.road, a.direction, a.lane) in lanes)]
     taken = {a.id for a in actors} | {name for s in reading.sentences for name in reading.named_in(s)}
     for told in _told(behavior, reading):
-        leader = _leader(told, pair)
+        leader = _leader(told, row)
         if leader is None or len(actors) >= _MOST or told.name in {a.id for a in actors}:
             continue
         name = told.name or _free(taken, "P" if actor_kind(told.kind).walks else "V")
@@ -64,12 +66,12 @@ def _ahead(kind: ActorKind, name: str, leader: Actor) -> Actor:
     )  # fmt: skip
 
 
-def _leader(told: _Told, pair: list[Actor]) -> Actor | None:
-    """The vehicle that waits: as named, else the one of the contact that stands or slows."""
-    able = [a for a in pair if a.record.drives and a.maneuver in _WAITING]
-    named = [a for a in able if a.id == told.waits]
+def _leader(told: _Told, row: list[Actor]) -> Actor | None:
+    """The vehicle that waits: as named, else the one that stands or slows; `row`: those of the contact, and others in
+    their lanes."""
+    able = [a for a in row if a.record.drives and a.maneuver in _WAITING]
     if told.waits is not None:
-        return next(iter(named), None)
+        return next((a for a in able if a.id == told.waits), None)
     return next((a for a in able if a.maneuver in ("stopped", "slowing")), next(iter(able), None))
 
 
@@ -80,7 +82,7 @@ def _told(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:
     alone = sum(a.record.drives for a in behavior.actors) <= _PAIR
     walkers = any(a.record.exposed for a in behavior.actors)
     story = [s for s in reading.sentences if s.role in (*STORY_ROLES, "road") and s.start <= last]
-    vehicles = [t for s in story for t in _vehicles(s)] if alone else []
+    vehicles = [t for s in story for t in _vehicles(s)]
     queues = [t for s in story for t in _queue(s)][:_QUEUED] if alone and not vehicles else []
     people = [] if walkers else [t for s in story for t in _people(s)][:1]
     yield from (*vehicles[:1], *queues, *people)
@@ -100,7 +102,8 @@ def _vehicles(sentence: Sentence) -> Iterator[_Told]:
         if in_front or not elsewhere.search(f"{match['words']} {where}"):
             yield _Told(_kind(match["words"]), match["id"], _named_before(sentence.text, match.start()))
     for match in rule("company.waits_for_another").finditer(sentence.text):
-        if not elsewhere.search(match[0].replace(" behind ", " ", 1)):
+        here = "same" in (match["where"] or "")
+        if here or not elsewhere.search(match[0].replace(" behind ", " ", 1)):
             yield _Told(_kind(match["kind"]), None, _named_before(sentence.text, match.start()))
 
 

@@ -28,7 +28,12 @@ def joined(text):
     ("V1 was traveling north and was stopped behind a school bus.", [("V3", "bus", "stopped")]),
     ("V1 was traveling north and slowed for another vehicle.", [("V3", "car", "stopped")]),
     ("V1 was traveling north and stopped for a pedestrian.", [("P1", "pedestrian", "straight")]),
+    ("V1 was northbound, stopped behind a school bus in the northbound lane of the same road.",
+     [("V3", "bus", "stopped")]),
+    ("V1 was traveling north and braked to avoid stopped traffic.",
+     [("V3", "car", "stopped"), ("V4", "car", "stopped")]),
     ("V1 was traveling north and slowed.", []),
+    ("V1 was traveling north and swerved to avoid stopped traffic.", []),
     ("V1 was traveling north past a queue of traffic and slowed.", []),
     ("V1 was traveling north and slowed. A line of vehicles stood in the left lane.", []),
     ("V1 was traveling north and slowed for an oncoming vehicle.", []),
@@ -45,6 +50,11 @@ def test_they_stand_in_the_lane_of_the_one_that_waits():
     assert {(a.road, a.direction, a.lane, a.exit_road) for a in ahead} == {
         (first.road, first.direction, first.lane, first.exit_road)
     }
+
+
+def test_the_first_of_a_row_waits_for_one_without_a_number():
+    text = f"V3, V1 and V2 were northbound. V3 slowed for another vehicle. {BEHIND} V1 struck the rear of V3."
+    assert joined(text)[0] == [("V4", "car", "stopped")]
 
 
 def test_a_queue_of_numbered_vehicles_is_not_drawn_twice():
