@@ -71,8 +71,9 @@ def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Stri
 
 def struck_before(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Strike]:
     """The contacts with objects, people and animals that are told before the first one of two vehicles, in order; none
-    where no two vehicles touch."""
+    where no two vehicles touch. Contacts of unknown actors are left out."""
     actors = {a.id: a for a in behavior.actors}
+    contacts = [c for c in contacts if {c.striker, c.struck} <= actors.keys()]
     count = next((n for n, c in enumerate(contacts) if not _stands_by(actors[c.struck])), 0)
     early = [c for c in contacts[:count] if not _stands_by(actors[c.striker])]
     met = [c.struck for c in early] + [x for c in contacts[count:] for x in (c.striker, c.struck)]
