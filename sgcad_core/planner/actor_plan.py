@@ -290,4 +290,5 @@ def line_m(role: Role) -> float:
     if role.course.stalls and role.actor.maneuver == "backing":
         return IN_STALL_M
     entries = [p.entry_m for p in role.course.passages if p.entry_m < role.place.station_m]
-    return (entries[-1] if entries else role.place.station_m - 6.0) - STOP_LINE_M - role.size[0] / 2
+    at = entries[-1] - role.course.queued_m if entries else role.place.station_m - 6.0
+    return at - STOP_LINE_M - role.size[0] / 2

@@ -21,6 +21,7 @@ from sgcad_core.planner.aftermath.second_contact import MISSED
 from sgcad_core.planner.aftermath.struck_objects import Strike
 from sgcad_core.planner.aftermath.told_order import ToldOrder, met_in_order, pair_of
 from sgcad_core.planner.bystanders import place_clear
+from sgcad_core.planner.company import stand_ahead, with_company
 from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.meeting_place import Place, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option
@@ -36,7 +37,7 @@ from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.departures import departs, departure_station
 from sgcad_core.planner.lines.gore_lines import into_gores
 from sgcad_core.planner.lines.maneuver_course import course_of
-from sgcad_core.planner.lines.told_moves import with_room
+from sgcad_core.planner.lines.told_moves import off_and_back, with_room
 from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
 from sgcad_core.planner.motion import STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.scene import AFTER_S, Scene
@@ -47,8 +48,7 @@ from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.surface import road_surface
 
 _FURTHER_S, _EACH_S, _MOST_S = 3.0, 0.8, 7.0
-"""Additional time after the first contact where an actor goes on far, for each contact from the third on, and at
-most."""
+"""Additional time after the first contact where an actor goes on far, for each contact from the third on, at most."""
 _TOLD_S_PER_M = 0.14
 """Time for a told distance to the rest: slowed evenly from 14 m/s."""
 _MANEUVER_MISSED = 3.0
@@ -83,8 +83,9 @@ def plan(
     turn against their direction before they touch. Not `by_force`: without slides and the longest search.
     """
     behavior = into_gores(behavior)
+    courses = off_and_back(courses, (s.by for s in struck_before(behavior, behavior.contacts) if s.thing.firm))
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
-    lines = {a.id: course_of(graph, a, gentle) for a in behavior.actors}
+    lines = with_company(behavior, {a.id: course_of(graph, a, gentle) for a in behavior.actors})
     conflicts = Conflicts(behavior, lines, may_skid, by_force, courses)
     cast = _Cast(behavior, lines, tractors(behavior), courses, [note for line in lines.values() for note in line.notes])
     contacts, near = cast.contacts, behavior.near_crash
@@ -277,7 +278,8 @@ class _Cast:
         for actor in self.behavior.actors:
             if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in self.things | aside:
                 continue
-            if note := place_clear(scene, self.role(actor.id) if self.possible else self.alone(actor.id)):
+            ahead = stand_ahead(scene, actor, self.behavior, self.courses)
+            if not ahead and (note := place_clear(scene, (self.role if self.possible else self.alone)(actor.id))):
                 self.notes.append(note)
             track = scene.tracks[actor.id]
             own = track.own_s if track.motion.standing else track.own_s + scene.contact * STEP_S

@@ -71,8 +71,9 @@ def strikes_of(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Stri
 
 def struck_before(behavior: BehaviorSpec, contacts: Sequence[Contact]) -> list[Strike]:
     """The contacts with objects, people and animals that are told before the first one of two vehicles, in order; none
-    where no two vehicles touch."""
+    where no two vehicles touch. Contacts of unknown actors are left out."""
     actors = {a.id: a for a in behavior.actors}
+    contacts = [c for c in contacts if {c.striker, c.struck} <= actors.keys()]
     count = next((n for n, c in enumerate(contacts) if not _stands_by(actors[c.struck])), 0)
     early = [c for c in contacts[:count] if not _stands_by(actors[c.striker])]
     met = [c.struck for c in early] + [x for c in contacts[count:] for x in (c.striker, c.struck)]
@@ -168,24 +169,38 @@ class Ending:
                 yield from self._meet(contact, more=more > 0)
             elif any(strike.by in (touch.first, touch.second) for touch in self.scene.touches):
                 strike = _off_middle(strike, courses.get(strike.by, CourseTold()))
-                yield from self._strike(strike, surface, cost, more)
+                yield from self._strike(strike, courses.get(strike.by, CourseTold()), surface, (cost, more))
             else:
                 passed.append((strike, self.order.after))
 
-    def _strike(self, strike: Strike, surface: RoadSurface, cost: Callable[[], float], more: int) -> Iterator[str]:
-        """Places a thing on the way of its vehicle, or on another one that it can take; a note where it is missed."""
-        scene, before = self.scene, self.scene.runs
-        if place_thing(scene, strike, surface, cost, self.order, more=more):
-            return
+    def _strike(
+        self, strike: Strike, told: CourseTold, surface: RoadSurface, ends: tuple[Callable[[], float], int]
+    ) -> Iterator[str]:
+        """Places a thing on the way of its vehicle, or on another one that it can take; a note where it is missed. What
+        stays where it stands is beside the road, unless the vehicle is told to rest on the road. `ends`: the cost of
+        the rest as settled, and the number of contacts that follow."""
+        beside = strike.thing.firm and told.rest.where not in ("road", "intersection")
+        placed = beside and self._is_met(strike, surface, ends, on_road=False)
+        if not placed and not self._is_met(strike, surface, ends, on_road=True):
+            leave_beside(self.scene, strike)
+            yield f"{strike.by} does not reach {strike.thing.id}, which it strikes as told"
+
+    def _is_met(
+        self, strike: Strike, surface: RoadSurface, ends: tuple[Callable[[], float], int], *, on_road: bool
+    ) -> bool:
+        """Whether a thing has a place on the way of its vehicle, or on another one that it can take; `on_road`: the
+        place may be on the road."""
+        scene, before, (cost, more) = self.scene, self.scene.runs, ends
+        if place_thing(scene, strike, surface, cost, self.order, more=more, on_road=on_road):
+            return True
         for run in islice(runs_on(scene, strike.by, surface, self.order.after), _OTHER_WAYS):
             scene.runs = with_run(scene, strike.by, run)
             scene.settle()
-            if self.order.kept and place_thing(scene, strike, surface, cost, self.order, more=more):
-                return
+            if self.order.kept and place_thing(scene, strike, surface, cost, self.order, more=more, on_road=on_road):
+                return True
             scene.runs = before
             scene.settle()
-        leave_beside(scene, strike)
-        yield f"{strike.by} does not reach {strike.thing.id}, which it strikes as told"
+        return False
 
     def _meet(self, contact: Contact, *, more: bool) -> Iterator[str]:
         if not self.meet(contact, more=more):

@@ -92,16 +92,19 @@ def _out_of_reach(scene: Scene, strike: Strike) -> Floats:
 
 
 def place_thing(
-    scene: Scene, strike: Strike, surface: RoadSurface, cost: Callable[[], float], order: ToldOrder, *, more: int
-) -> bool:
+    scene: Scene, strike: Strike, surface: RoadSurface, cost: Callable[[], float], order: ToldOrder, *,
+    more: int, on_road: bool = True,
+) -> bool:  # fmt: skip
     """Places an object where it is struck with the stated side and the rest is best; False where no place is struck
     next in order.
 
-    `cost`: of the rest as settled. `more`: number of contacts that follow.
+    `cost`: of the rest as settled. `more`: number of contacts that follow. `on_road`: whether it may stand there.
     """
     best: tuple[float, Track] | None = None
     further = _FURTHER if more else _ALL_PLACES
     for pose in _poses(scene, strike, surface, order.after, more=more):
+        if not (on_road or surface.off(pose[None, :2])[0][0] > _OFF_ROAD_M):
+            continue
         track = _stand(scene, strike, pose)
         scene.settle()
         if _is_struck(scene, strike, order):

@@ -44,6 +44,8 @@ _LAST_TRIES = 90
 """Combinations tried with boxes that slide against their direction, since no driving brings the sides together."""
 _ONE_TURNS = 24
 """Combinations tried in which only one of the two turns its side to the other."""
+_SLIGHT_RAD, _SLIGHTLY = math.radians(20.0), 4
+"""Angle at which a standing vehicle is still in line with the others, and the number of such options."""
 _TURNING = 40
 """Combinations tried with other lines of a turn."""
 
@@ -113,6 +115,9 @@ class Conflicts:
             steep = both(steeply)
             yield Stage((steep[0], plain[1]), _TRIES[0])
             yield Stage((plain[0], steep[1]), _TRIES[0])
+            slight = both(_slightly_askew)
+            yield Stage((steep[0], slight[1]), _TRIES[0])
+            yield Stage((slight[0], steep[1]), _TRIES[0])
         yield Stage(both(options), _TRIES[0])
         if a.actor.maneuver in TURNING or b.actor.maneuver in TURNING:
             yield Stage(both(turned), _TURNING)
@@ -196,6 +201,13 @@ def _unturned(role: Role) -> list[Option]:
     if is_standing(role):
         return options(role)
     return [option for option in options(role) if not option.twist.angle_rad and not option.drift.note]
+
+
+def _slightly_askew(role: Role) -> list[Option]:
+    """The most ordinary options in which a standing one is turned a little to what comes; none of others."""
+    if not is_standing(role):
+        return []
+    return [option for option in options(role) if 0.0 < abs(option.twist.angle_rad) < _SLIGHT_RAD][:_SLIGHTLY]
 
 
 def _as_told(role: Role) -> list[Option]:

@@ -18,6 +18,8 @@ from sgcad_core.planner.lines.crossing import LEAVES, crossings, end_meets_flank
 from sgcad_core.planner.lines.departures import (
     DEPARTURES,
     GENTLY,
+    LONG_AT_M,
+    OFF_ROAD_M,
     SWERVE_MPS2,
     aside_m,
     departs,
@@ -108,7 +110,10 @@ def _to_parked(role: Role) -> list[Drift]:
         return []
     aside, touch = role.place.aside_m, (role.size[1] + role.other_width_m) / 2
     reach = [(abs(aside) - touch + share * role.size[1], cost) for share, cost in _OVERLAPS]
-    return [_drift(role, math.copysign(left, aside), cost, 1.7, PARKED_THERE) for left, cost in reach if left > 0]
+    lines = [_drift(role, math.copysign(left, aside), cost, 1.7, PARKED_THERE) for left, cost in reach if left > 0]
+    if role.actor.maneuver == "backing" and abs(math.sin(role.place.angle_rad)) < 0.5:  # it was parked in that row
+        return [*(one._replace(length_m=1.0, end_m=-1e4) for one in lines), *_behind(lines, lines)]
+    return lines
 
 
 def _steep(role: Role) -> list[Drift]:
@@ -142,7 +147,7 @@ def _departures(role: Role, *, fine: bool) -> list[Drift]:
     found: list[Drift] = []
     sides = departure_sides(role.course, role.place.station_m, role.told.departs or "either")
     for rank, side in enumerate(sides):
-        wide = aside_m(role.course, side)
+        wide = aside_m(role.course, side, LONG_AT_M if role.other_long else OFF_ROAD_M)
         for share, cost, ease in _eased(shares):
             drift = _drift(role, wide * share, cost + _OTHER_SIDE * rank, ease)
             found.append(half_gone(role, drift, ease) if role.other_long else still_leaving(role, drift, ease))

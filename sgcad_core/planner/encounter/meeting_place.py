@@ -61,7 +61,7 @@ def preferred_station(actor: Actor, course: Course, length_m: float) -> float:
         own = course.on_road(actor.road) or (course.start_m, course.end_m)
         return (own[0] + own[1]) / 2
     if waits:
-        return node.entry_m - STOP_LINE_M - length_m / 2
+        return node.entry_m - STOP_LINE_M - length_m / 2 - course.queued_m
     if actor.maneuver in _MID_BLOCK and node.around:
         return (node.exit_m + next((p.entry_m for p in ahead if p.entry_m > node.exit_m), node.exit_m)) / 2
     if actor.maneuver in _MID_BLOCK and node.entry_m - _BEFORE_JUNCTION_M > course.start_m:
@@ -131,7 +131,7 @@ def _goes_around(actor: Actor, course: Course) -> bool:
 
 def _before_junction(station_m: float, course: Course) -> float:
     entries = [p.entry_m for p in course.passages if p.is_junction and p.entry_m > course.start_m]
-    return min([station_m, *(e - 8.0 for e in entries[:1])])
+    return min([station_m, *(e - 8.0 - course.queued_m for e in entries[:1])])
 
 
 def _seen(station: float, own: Floats, other: Floats, gap: float) -> Place:

@@ -16,6 +16,8 @@ from sgcad_core.planner.lines.departures import departs, in_a_mouth, on_the_road
 from sgcad_core.planner.lines.path import Path
 
 _ZONE_M = 12.0
+_ON_THE_ROAD = 4.0
+"""Cost of an encounter on the road for one that is told to leave it: more than `try_elsewhere` gives up for a rest."""
 _DRIFTING = ACROSS_LANES | {"crossing_centerline", "departing_road_left", "departing_road_right"}
 _NOT_SHOWN = 2.0
 """Cost of a turn that has hardly begun, and of a straight maneuver that has turned."""
@@ -58,7 +60,7 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
         penalty = penalty + _UNMOVED * _unmoved(role, path, drift)
     if departs(maneuver, role.told.departs):
         aside = drift.profile(path.s_m)
-        penalty = penalty + _NOT_SHOWN * on_the_road(role.course, aside)
+        penalty = penalty + _ON_THE_ROAD * on_the_road(role.course, aside)
         penalty = penalty + _IN_MOUTH * in_a_mouth(role.course, path.s_m, aside)
     if drift.evades:
         penalty = penalty + _UNSTEERED * (np.abs(drift.profile(path.s_m) - drift.before_m) < _STEERED_M)

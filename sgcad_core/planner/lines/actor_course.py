@@ -78,6 +78,8 @@ class Course:
     """To the left edge of the lanes of its direction; beyond lies the median or the other direction."""
     median_m: float = 0.0
     """Width of the median; 0 where the two directions lie beside each other."""
+    queued_m: float = 0.0
+    """Room that those need who stand ahead in the lane, before the junction."""
     astray: bool = False
     """Whether the requested route does not exist: another one was taken, or one off the road."""
 

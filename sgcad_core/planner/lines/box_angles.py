@@ -12,6 +12,8 @@ from sgcad_core.planner.lines.axle_to_box import tightest
 
 ASKEW, STEERS, SKIDS = "stands askew", "steers aside before contact", "skids before contact"
 SLIDES = "slides into the contact at an angle that no steering explains"
+_IN_A_ROW_RAD, _PARKED_ACROSS = math.radians(20.0), 0.5
+"""Angle to the curb from which on a parked vehicle is out of its row, and the cost of that."""
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
 
@@ -28,7 +30,8 @@ def aiming(role: Role) -> list[Twist]:
 def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
     """The ways to reach an angle: standing, by steering, and in a skid where the report states one."""
     if is_standing(role):
-        return [Twist(cost, angle_rad, ASKEW)]
+        across = role.actor.maneuver == "parked" and abs(angle_rad) > _IN_A_ROW_RAD
+        return [Twist(cost + _PARKED_ACROSS * across, angle_rad, ASKEW)]
     found = [Twist(cost, angle_rad, STEERS)]
     if abs(role.place.aside_m) < 16:
         found.append(Twist(cost + 0.05, angle_rad, STEERS, through=True))

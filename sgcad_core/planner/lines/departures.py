@@ -22,6 +22,8 @@ from sgcad_core.records.course import DepartureSide
 
 OFF_ROAD_M = 4.0
 """From the edge of the road to a vehicle that has left it."""
+LONG_AT_M = 1.5
+"""The same to one that meets what runs along the road, as guardrails and barriers do."""
 DEPARTURES: dict[Maneuver, int] = {"departing_road_left": 1, "departing_road_right": -1}
 """Maneuvers off the road, and the side: 1 to the left."""
 SWERVE_MPS2 = 6.0
@@ -71,19 +73,26 @@ def departure_sides(course: Course, station_m: float, told: DepartureSide) -> tu
     return (1, -1) if bend < -_BEND_RAD else (-1, 1)
 
 
-def aside_m(course: Course, side: int) -> float:
+def aside_m(course: Course, side: int, off_m: float = OFF_ROAD_M) -> float:
     """How far to the left of its lane's line a vehicle is that has left the road on a side, metres: in the median where
-    there is one, else beyond the other direction."""
+    there is one, else beyond the other direction; `off_m`: from the edge of the road."""
     if side < 0:
-        return -(course.right_edge_m + OFF_ROAD_M)
+        return -(course.right_edge_m + off_m)
     if course.median_m > _LEAST_MEDIAN_M:
-        return course.own_left_m + min(max(course.median_m / 2, _BESIDE_M), OFF_ROAD_M)
-    return course.left_edge_m + OFF_ROAD_M
+        return course.own_left_m + min(max(course.median_m / 2, _BESIDE_M), off_m)
+    return course.left_edge_m + off_m
+
+
+def left_of_road_m(course: Course) -> float:
+    """How far to the left of its lane's line the road ends: at the median where there is one, metres."""
+    return course.own_left_m if course.median_m > _LEAST_MEDIAN_M else course.left_edge_m
 
 
 def on_the_road(course: Course, left_m: Floats) -> NDArray[np.bool_]:
     """(n,) whether offsets from its line are still within the edges of the road."""
     within: NDArray[np.bool_] = (left_m < course.left_edge_m) & (-left_m < course.right_edge_m)
+    if course.median_m <= _LEAST_MEDIAN_M:  # the lines between two directions are none
+        return within
     median = (left_m > course.own_left_m) & (left_m < course.own_left_m + course.median_m)
     return within & ~median
 

@@ -7,16 +7,16 @@ of it; no other actor and no time.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 from sgcad_core.kinds import Maneuver
 from sgcad_core.planner.actor_plan import Drift, Role, Swing, usual_speed
-from sgcad_core.planner.lines.departures import departure_sides, way_off_m
+from sgcad_core.planner.lines.departures import departure_sides, left_of_road_m, way_off_m
 from sgcad_core.planner.lines.path import ramp_length_m
 from sgcad_core.planner.motion import HARD_MPS2
-from sgcad_core.records.course import Move
+from sgcad_core.records.course import Courses, Move
 
 _PARTLY_M = 1.0
 """Over the edge of the road: a vehicle that comes back on it."""
@@ -44,6 +44,14 @@ class _Target(NamedTuple):
 
     left_m: float
     yaw_rad: float
+
+
+def off_and_back(told: Courses, to_things: Iterable[str]) -> Courses:
+    """The stated courses, where vehicles that are told to leave the road strike something there (`to_things`) before
+    they meet another one: they come back from it."""
+    ways = {who: (Move("departs", told[who].departs), Move("returns")) for who in to_things
+            if who in told and told[who].departs and not told[who].moves}  # fmt: skip
+    return {who: replace(course, moves=ways.get(who, course.moves)) for who, course in told.items()}
 
 
 def last_move(role: Role) -> Move | None:
@@ -157,7 +165,7 @@ def _place(role: Role, move: Move, left_m: float) -> float:
     """Where a move ends, metres to the left of the line of its lane."""
     course, way = role.course, _hand(role, move)
     if move.kind == "departs":
-        return course.left_edge_m + _PARTLY_M if way > 0 else -(course.right_edge_m + _PARTLY_M)
+        return left_of_road_m(course) + _PARTLY_M if way > 0 else -(course.right_edge_m + _PARTLY_M)
     if move.kind == "crosses":
         return course.opposite_m
     within = max(-course.right_edge_m, min(left_m, course.left_edge_m))

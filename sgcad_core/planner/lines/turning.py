@@ -12,6 +12,8 @@ from sgcad_core.planner.lines.actor_course import Passage
 
 _CORNER_RUN_M = 10.0
 """Length before and behind a junction on which a cut corner is beside the lane."""
+_STARTED_RUN_M = 3.0
+"""The same of one that stands at the line first, square in its lane."""
 
 
 def corner_lines(role: Role) -> list[Drift]:
@@ -19,7 +21,8 @@ def corner_lines(role: Role) -> list[Drift]:
     turn = role.course.turn
     if turn is None:
         return []
-    middle, half = (turn.entry_m + turn.exit_m) / 2, max(turn.exit_m - turn.entry_m, 6.0) / 2 + _CORNER_RUN_M
+    run_m = _STARTED_RUN_M if role.told.from_rest else _CORNER_RUN_M
+    middle, half = (turn.entry_m + turn.exit_m) / 2, max(turn.exit_m - turn.entry_m, 6.0) / 2 + run_m
     cut = [Drift(0.15, left, half, middle, True) for left in (1.2, -1.2, -2.2)]
     if role.actor.maneuver == "turn_right":
         return [*cut, *_from_the_left(role, turn)]

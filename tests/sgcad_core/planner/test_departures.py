@@ -19,7 +19,7 @@ from sgcad_core.planner.lines.actor_course import find_course
 from sgcad_core.planner.lines.departures import aside_m, departs, departure_sides, in_a_mouth, on_the_road, side_of
 from sgcad_core.planner.lines.told_moves import with_room
 from sgcad_core.planner.plan import plan
-from sgcad_core.records.course import CourseTold
+from sgcad_core.records.course import CourseTold, RestTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.units import MPS_PER_MPH
@@ -74,6 +74,28 @@ def test_a_center_turn_lane_is_no_median():
     line = find_course(roads(center_turn_lane=True), CAR)
     assert line.median_m < 0.5
     assert aside_m(line, 1) > line.left_edge_m
+
+
+def test_the_lines_between_two_directions_are_on_the_road():
+    line = find_course(roads(), CAR)
+    between = line.own_left_m + line.median_m / 2
+    assert 0.0 < line.median_m < 0.6
+    assert on_the_road(line, np.array([between])).all()
+
+
+def test_a_barrier_is_met_beyond_the_road_even_where_a_rest_on_the_other_side_is_told():
+    far = RestTold(where="off_road", side="right", facing_deg=180.0)
+    wall = TREE.model_copy(update={"length_m": 0.6, "width_m": 14.0, "firm": True})
+    leaving = CAR.model_copy(update={"maneuver": "departing_road_left"})
+    crash = HITS_TREE.model_copy(update={"actors": (leaving, wall)})
+    told = {"V1": CourseTold(departs="left", spin="clockwise", rest=far)}
+    graph = roads(lanes_in=2, lanes_out=2)
+    found = plan(crash, graph, courses=told)
+    assert found.contact is not None
+    at = next(t for t in found.trajectories if t.actor == "V1")
+    x = at.x_m[round(found.contact.t_s / 0.05)]
+    line = find_course(graph, leaving)
+    assert float(line.path.poses([line.start_m])[0, 0]) - x > line.left_edge_m
 
 
 def test_what_is_told_last_counts_before_the_maneuver():

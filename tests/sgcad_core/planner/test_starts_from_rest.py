@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from sgcad_core.planner import plan
+from sgcad_core.planner.actor_plan import Role, start_m
+from sgcad_core.planner.encounter.meeting_place import Place
 from sgcad_core.planner.lead_time import WAITS_S
+from sgcad_core.planner.lines.actor_course import find_course
+from sgcad_core.planner.lines.turning import corner_lines
 from sgcad_core.planner.motion import ACCELERATION_MPS2
 from sgcad_core.records.course import CourseTold
-from sgcad_core.records.specs import BehaviorSpec
+from sgcad_core.records.specs import BehaviorSpec, size_m
 from tests.sgcad_core.planner.crash_scenes import network
 from tests.sgcad_core.planner.test_plan_rules import actor, at_contact, contact, track
 
@@ -45,3 +50,31 @@ def test_a_start_from_rest_is_kept_in_plain_crossings() -> None:
     )
     made = plan(behavior, network("four_leg"), courses=_FROM_REST)
     assert not [note for note in made.notes if "does not stop" in note]
+
+
+@pytest.mark.parametrize("hit", ["V1 front V2 left", "V2 front V1 left"])
+def test_one_that_stands_at_its_line_stands_square_in_its_lane(hit) -> None:
+    behavior = BehaviorSpec(
+        actors=(actor("V1", "turn_left", "E", "S"), actor("V2", "straight", "W", "E")), contacts=(contact(hit),)
+    )
+    made = plan(behavior, network("four_leg"), courses=_FROM_REST)
+    assert abs(track(made, "V2").heading_rad[0]) < 0.05
+
+
+def test_corners_are_cut_behind_the_line_where_one_started_from_rest() -> None:
+    one = actor("V2", "straight", "W", "E")
+    course = find_course(network("four_leg"), one)
+    role = Role(one, course, size_m(one), Place(course.turn.exit_m, 0.0, 0.0, 0.0), told=_FROM_REST["V2"])
+    begins = [line.end_m - line.length_m for line in corner_lines(role)]
+    assert begins
+    assert min(begins) > start_m(role)
+
+
+def test_one_that_backs_into_a_parked_vehicle_was_in_the_row_of_the_parked_ones() -> None:
+    behavior = BehaviorSpec(
+        actors=(actor("V1", "parked", "S"), actor("V2", "backing", "S")), contacts=(contact("V2 back V1 front"),)
+    )
+    made = plan(behavior, network("straight"))
+    x_m = track(made, "V2").x_m[: at_contact(made)]
+    assert made.realised
+    assert np.ptp(x_m) < 0.1

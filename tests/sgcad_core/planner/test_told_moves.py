@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 from sgcad_core.metrics.labels.motion_label_match import Path
 from sgcad_core.metrics.labels.observed_crash import Crash, VehicleMotion
 from sgcad_core.metrics.road_departure import moves_made
+from sgcad_core.planner.lines.actor_course import find_course
+from sgcad_core.planner.lines.told_moves import off_and_back
 from sgcad_core.planner.plan import plan
 from sgcad_core.records.course import CourseTold, Move
 from sgcad_core.records.specs import size_m
@@ -66,3 +68,24 @@ def test_moves_at_any_speed_begin_on_the_road(speed):
     assert all(seen)
     assert abs(float(track.y_m[0])) < 250
     assert np.abs(np.diff(track.x_m)).max() < 1.0
+
+
+def test_a_divided_road_is_left_into_its_median_and_not_across_it():
+    graph = roads(median="grass", lanes_in=2, lanes_out=2)
+    told = CourseTold(departs="right", moves=(OFF_LEFT, BACK, OFF_RIGHT))
+    done, _ = made(HITS_TREE, told, graph)
+    line = find_course(graph, CAR)
+    came_to = max(line.path.poses([line.start_m])[0, 0] - done.trajectories[0].x_m)
+    assert line.own_left_m < came_to < line.own_left_m + line.median_m
+
+
+def test_one_that_strikes_a_thing_off_the_road_and_then_a_vehicle_comes_back():
+    told = {
+        "V1": CourseTold(departs="left"),
+        "V2": CourseTold(departs="right", moves=(ACROSS, BACK)),
+        "V3": CourseTold(),
+    }
+    found = off_and_back(told, ["V1", "V2", "V3", "V4"])
+    assert found["V1"].moves == (OFF_LEFT, BACK)
+    assert (found["V2"], found["V3"]) == (told["V2"], told["V3"])
+    assert off_and_back(told, []) == told

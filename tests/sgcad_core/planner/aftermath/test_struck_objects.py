@@ -12,6 +12,7 @@ from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.planner import plan
 from sgcad_core.records.course import CourseTold, RestTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
+from sgcad_core.roads.surface import road_surface
 from tests.sgcad_core.planner.crash_scenes import network
 
 
@@ -102,3 +103,14 @@ def test_a_wall_that_is_struck_first_stays_where_it_stands(firm: bool) -> None:
     made = plan(BehaviorSpec(actors=(car, wall, thing(2)), contacts=tuple(met)), network("four_leg"))
     moved = next(math.dist(t.pose[0, :2], t.pose[-1, :2]) for t in made.trajectories if t.actor == "O1")
     assert (moved == 0.0) is firm
+
+
+@pytest.mark.parametrize(("first_mph", "second_mph"), [(25, 30), (25, 45), (40, 30)])
+def test_a_firm_thing_stands_beside_the_road(first_mph: int, second_mph: int) -> None:
+    behavior = crash(thing(1).model_copy(update={"firm": True}))
+    speeds = {"V1": first_mph, "V2": second_mph, "O1": None}
+    actors = tuple(a.model_copy(update={"speed_mph": speeds[a.id]}) for a in behavior.actors)
+    graph = network("four_leg")
+    made = plan(behavior.model_copy(update={"actors": actors}), graph)
+    post = next(t for t in made.trajectories if t.actor == "O1")
+    assert road_surface(graph).off(post.pose[:1, :2])[0][0] > 0.3

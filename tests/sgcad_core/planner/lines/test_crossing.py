@@ -12,16 +12,19 @@ from hypothesis import strategies as st
 from sgcad_core.execution.plan_score import ODD_FROM
 from sgcad_core.planner import Plan, plan
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
+from sgcad_core.roads.lane_graph import LaneGraph
 from tests.sgcad_core.planner.crash_scenes import network
+from tests.sgcad_core.planner.test_departures import roads
 
 
-def _made(layout: str, first: dict[str, object], second: dict[str, object], areas: tuple[str, str]) -> Plan:
+def _made(layout: str | LaneGraph, first: dict[str, object], second: dict[str, object], areas: tuple[str, str]) -> Plan:
+    graph = network(layout) if isinstance(layout, str) else layout
     base = {"kind": "car", "direction": "forward", "maneuver": "straight"}
     actors = [Actor.model_validate(base | one) for one in (first, second)]
     contact = Contact.model_validate(
         {"striker": "V1", "striker_area": areas[0], "struck": "V2", "struck_area": areas[1]}
     )
-    return plan(BehaviorSpec(actors=tuple(actors), contacts=(contact,)), network(layout))
+    return plan(BehaviorSpec(actors=tuple(actors), contacts=(contact,)), graph)
 
 
 def _turned_deg(made: Plan, name: str) -> float:
@@ -95,3 +98,17 @@ def test_a_thing_turns_its_front_to_the_end_that_comes(area: str) -> None:
         (area, "front"),
     )
     assert made.realised
+
+
+@pytest.mark.parametrize("mph", [None, 25, 40])
+def test_a_parked_vehicle_stays_in_its_row_where_a_front_meets_its_flank(mph: int | None) -> None:
+    made = _made(
+        roads(beside=("parking",)),
+        {"id": "V1", "road": "N", "speed_mph": mph},
+        {"id": "V2", "road": "N", "maneuver": "parked"},
+        ("front", "left"),
+    )
+    parked = next(t for t in made.trajectories if t.actor == "V2")
+    along = math.remainder(float(parked.heading_rad[0]) + math.pi / 2, 2 * math.pi)
+    assert made.realised
+    assert abs(math.degrees(along)) < 20.0 < _turned_deg(made, "V1")

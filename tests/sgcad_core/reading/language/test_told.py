@@ -8,9 +8,9 @@ from sgcad_core.reading.language.data import language
 from tests.sgcad_core.reading.language.readings import facts_of_sentences
 from tests.sgcad_core.reading.language.told import differs, drawn, silenced, told
 
-ELSEWHERE = ("account", "degrade", "report", "street_places", "telling", "typos", "wordings")
-"""Files whose rules no reading uses: what a scenario made of a report, robustness levels, texts without roads, the
-learned reader's words, names that a map knows, slips of typing. They have tests of their own."""
+ELSEWHERE = ("account", "company", "degrade", "report", "street_places", "telling", "typos", "wordings")
+"""Files whose rules no reading uses: what a scenario made of a report, who stands ahead, robustness levels, texts
+without roads, the learned reader's words, names that a map knows, slips of typing. They have tests of their own."""
 WITHOUT = 66
 """Rules that no text of facts needs yet; let it only shrink."""
 

@@ -1,0 +1,137 @@
+"""Road users without a contact that stand ahead of one with a contact: traffic that it waits for, and pedestrians.
+
+A stopped vehicle in the lane of a vehicle of the contact, and a pedestrian on its road, are placed ahead of all that
+drive there, as far as these come. Works on a settled scene. Knows actors, courses and tracks.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from sgcad_core.geometry.plane import Floats
+from sgcad_core.planner.actor_plan import Role
+from sgcad_core.planner.aftermath.struck_objects import standing_track
+from sgcad_core.planner.encounter.motion_options import options
+from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.lines.walkers import walking_courses
+from sgcad_core.planner.scene import CLEAR_M, Scene
+from sgcad_core.records.specs import Actor, BehaviorSpec, size_m
+
+GAP_M = 2.0
+"""Between two that stand one behind the other."""
+_IN_LANE_M = 2.2
+"""Distance from the middle of a lane to a center that drives in it."""
+_FURTHER_M = (0.0, 1.5, 3.0, 5.0, 8.0, 12.0, 18.0, 26.0)
+_BEFORE_WALKER_M, _CROSSWALK_M = 2.0, 15.0
+"""From the front of a waiting vehicle to the line of a pedestrian, and as far ahead at most a crosswalk is taken."""
+_WALKED_S = (0.0, 0.6, -0.6, 1.2, -1.2, 2.0, -2.0, 3.0, -3.0)
+"""Own times of a pedestrian at the first contact; at 0 in the middle of the lane."""
+_ROLLS_ON_M = 14.0
+"""Way of one that still rolls when it is struck, to where it stands behind the others."""
+_INTO_M = 1.0
+"""By which a standing front may be over the edge of a junction."""
+
+
+def led_by(behavior: BehaviorSpec, actor: Actor) -> Actor | None:
+    """The actor of the first contact that another one stands ahead of; None for others."""
+    near = behavior.near_crash
+    first = behavior.contacts[0] if behavior.contacts else near.conflict if near else None
+    touching = {who for c in behavior.contacts for who in (c.striker, c.struck)}
+    if first is None or actor.id in touching or actor.id in (first.striker, first.struck):
+        return None
+    waits = actor.maneuver == "stopped" and actor.record.drives and not actor.gore
+    if not (waits or (actor.record.walks and actor.maneuver == "straight")):
+        return None
+    pair = [a for name in (first.struck, first.striker) for a in behavior.actors if a.id == name]
+    driving = [a for a in pair if a.record.drives and a.maneuver not in ("parked", "backing")]
+    ahead = [a for a in driving if (a.road, a.direction) == (actor.road, actor.direction)]
+    same = [a for a in ahead if actor.record.walks or a.lane == actor.lane]
+    waiting = [a for a in same if a.maneuver in ("stopped", "slowing")]
+    return next(iter([*waiting, *same]), None)
+
+
+def with_company(behavior: BehaviorSpec, courses: Mapping[str, Course]) -> dict[str, Course]:
+    """The courses, with the room that vehicles need which stand ahead in the lane."""
+    found = dict(courses)
+    for actor in behavior.actors:
+        leader = None if actor.record.walks else led_by(behavior, actor)
+        if leader is None:
+            continue
+        for other in _lane_of(behavior, leader):
+            queued_m = found[other.id].queued_m or (_ROLLS_ON_M if leader.maneuver == "slowing" else 0.0)
+            found[other.id] = replace(found[other.id], queued_m=queued_m + size_m(actor)[0] + GAP_M)
+    return found
+
+
+def _lane_of(behavior: BehaviorSpec, leader: Actor) -> list[Actor]:
+    there = leader.road, leader.direction, leader.lane
+    return [other for other in behavior.actors if (other.road, other.direction, other.lane) == there]
+
+
+def stand_ahead(scene: Scene, actor: Actor, behavior: BehaviorSpec, courses: Mapping[str, Course]) -> bool:
+    """Places an actor ahead of the one that waits for it, clear of all; whether that is its place and it is free."""
+    leader = led_by(behavior, actor)
+    if leader is None or leader.id not in scene.tracks:
+        return False
+    course = courses[leader.id]
+    front = _front_m(scene, behavior, leader, course)
+    place = _walks if actor.record.walks else _stands
+    return place(scene, actor, course, front)
+
+
+def _stands(scene: Scene, actor: Actor, course: Course, front_m: float) -> bool:
+    length = size_m(actor)[0]
+    for more in _FURTHER_M:
+        station = _off_junctions(course, front_m + GAP_M + length / 2 + more, length)
+        track = standing_track(scene, actor, course.path.poses([station])[0])
+        if scene.clear_until(track.poses, track.size, CLEAR_M) == scene.count:
+            scene.tracks[actor.id] = track
+            return True
+    return False
+
+
+def _walks(scene: Scene, actor: Actor, course: Course, front_m: float) -> bool:
+    near = [s for s in course.crosswalks if front_m + _BEFORE_WALKER_M / 2 < s < front_m + _CROSSWALK_M]
+    station = min(near, default=front_m + _BEFORE_WALKER_M)
+    for _, line, place in walking_courses(course, station, None):
+        role = Role(actor, line, size_m(actor), place, surface=scene.surface)
+        motion = options(role)[0].motion
+        for own in _WALKED_S:
+            poses = scene.poses(motion, own, brakes=False)
+            if scene.clear_until(poses, motion.size, CLEAR_M) == scene.count:
+                scene.add(actor.id, actor.kind, motion, own, brakes=False)
+                return True
+    return False
+
+
+def _front_m(scene: Scene, behavior: BehaviorSpec, leader: Actor, course: Course) -> float:
+    """The furthest station that those come to who drive or stand in the lane of the leader."""
+    return max(_reach_m(scene, name, course) for name in _in_line(scene, behavior, leader))
+
+
+def _in_line(scene: Scene, behavior: BehaviorSpec, leader: Actor) -> Iterator[str]:
+    yield leader.id
+    for other in behavior.actors:
+        if other.id in scene.tracks and (other.road, other.direction) == (leader.road, leader.direction):
+            yield other.id
+
+
+def _reach_m(scene: Scene, name: str, course: Course) -> float:
+    """The furthest station of the front of a box while it is in the lane of a course; -inf if it never is."""
+    track, path = scene.tracks[name], course.path
+    away: Floats = np.hypot(*(track.poses[:, None, :2] - path.points[None]).transpose(2, 0, 1))
+    inside = away.min(axis=1) < _IN_LANE_M
+    return float(path.s_m[away.argmin(axis=1)[inside].max()]) + track.size[0] / 2 if inside.any() else -math.inf
+
+
+def _off_junctions(course: Course, station_m: float, length_m: float) -> float:
+    """The station, or the first one behind the junction that a box there would block."""
+    for crossed in course.passages:
+        blocks = station_m + length_m / 2 > crossed.entry_m + _INTO_M and station_m - length_m / 2 < crossed.exit_m
+        if crossed.is_junction and not crossed.around and blocks:
+            station_m = crossed.exit_m + length_m / 2 + _INTO_M
+    return station_m

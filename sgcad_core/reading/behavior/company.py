@@ -1,0 +1,126 @@
+"""Road users without a contact that are told ahead of one with a contact: queues, vehicles waited for, pedestrians.
+
+Adds them to a behavior in the lane of the one that waits; the planner places them ahead of it. Knows the reading, no
+roads and no motion. What is told elsewhere than ahead is not added.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from sgcad_core.kinds import actor_kind
+from sgcad_core.reading.actors.people_objects import kind_of_word
+from sgcad_core.reading.language import rule
+from sgcad_core.reading.reading import Reading
+from sgcad_core.reading.text.normalise import Sentence
+from sgcad_core.reading.text.sentence_roles import STORY_ROLES
+from sgcad_core.records.specs import Actor, ActorKind, BehaviorSpec
+
+_QUEUED, _MOST = 2, 12
+"""Vehicles that are drawn of a queue, and actors of a behavior in all."""
+_PAIR = 2
+"""With more vehicles than those of a contact a queue is one of the numbered ones."""
+_WAITING = ("stopped", "slowing", "straight", "negotiating_curve", "turn_left", "turn_right")
+_KINDS: tuple[tuple[str, ActorKind], ...] = (
+    ("bus", "bus"), ("pickup", "pickup"), ("truck", "truck"), ("van", "van"), ("suv", "suv"),
+    ("motorcycle", "motorcycle"),
+)  # fmt: skip
+
+
+class _Told(NamedTuple):
+    """One who is waited for: the kind, the report's number if any, and the vehicle that waits."""
+
+    kind: ActorKind
+    name: str | None
+    waits: str | None
+
+
+def with_company(behavior: BehaviorSpec, reading: Reading) -> BehaviorSpec:
+    """The behavior with the road users that are told ahead of a vehicle of its contact and have none."""
+    near = behavior.near_crash
+    first = behavior.contacts[0] if behavior.contacts else near.conflict if near else None
+    if first is None:
+        return behavior
+    actors = list(behavior.actors)
+    pair = [a for name in (first.struck, first.striker) for a in actors if a.id == name]
+    lanes = {(a.road, a.direction, a.lane) for a in pair}
+    row = [*pair, *(a for a in actors if a not in pair and (a.road, a.direction, a.lane) in lanes)]
+    taken = {a.id for a in actors} | {name for s in reading.sentences for name in reading.named_in(s)}
+    for told in _told(behavior, reading):
+        leader = _leader(told, row)
+        if leader is None or len(actors) >= _MOST or told.name in {a.id for a in actors}:
+            continue
+        name = told.name or _free(taken, "P" if actor_kind(told.kind).walks else "V")
+        taken.add(name)
+        actors.append(_ahead(told.kind, name, leader))
+    return behavior.model_copy(update={"actors": tuple(actors)})
+
+
+def _ahead(kind: ActorKind, name: str, leader: Actor) -> Actor:
+    walks = actor_kind(kind).walks
+    return Actor(
+        id=name, kind=kind, road=leader.road, direction=leader.direction, lane=None if walks else leader.lane,
+        exit_road=None if walks else leader.exit_road, maneuver="straight" if walks else "stopped",
+    )  # fmt: skip
+
+
+def _leader(told: _Told, row: list[Actor]) -> Actor | None:
+    """The vehicle that waits: as named, else the one that stands or slows; `row`: those of the contact, and others in
+    their lanes."""
+    able = [a for a in row if a.record.drives and a.maneuver in _WAITING]
+    if told.waits is not None:
+        return next((a for a in able if a.id == told.waits), None)
+    return next((a for a in able if a.maneuver in ("stopped", "slowing")), next(iter(able), None))
+
+
+def _told(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:
+    """All of them in the sentences up to the first contact; a queue where no further vehicle is numbered."""
+    last = max((f.start for f in reading.facts if f.field.startswith("contacts.0") and f.start is not None),
+               default=len(reading.narrative))  # fmt: skip
+    alone = sum(a.record.drives for a in behavior.actors) <= _PAIR
+    walkers = any(a.record.exposed for a in behavior.actors)
+    story = [s for s in reading.sentences if s.role in (*STORY_ROLES, "road") and s.start <= last]
+    vehicles = [t for s in story for t in _vehicles(s)]
+    queues = [t for s in story for t in _queue(s)][:_QUEUED] if alone and not vehicles else []
+    people = [] if walkers else [t for s in story for t in _people(s)][:1]
+    yield from (*vehicles[:1], *queues, *people)
+
+
+def _queue(sentence: Sentence) -> Iterator[_Told]:
+    match = rule("account.crowd").search(sentence.text)
+    if match and not rule("company.queue_elsewhere").search(sentence.text):
+        yield from [_Told("car", None, _named_before(sentence.text, match.start()))] * _QUEUED
+
+
+def _vehicles(sentence: Sentence) -> Iterator[_Told]:
+    elsewhere = rule("company.elsewhere")
+    for match in rule("company.waits_for").finditer(sentence.text):
+        where = match["where"] or ""
+        in_front = "in front of" in where or "ahead of" in where
+        if in_front or not elsewhere.search(f"{match['words']} {where}"):
+            yield _Told(_kind(match["words"]), match["id"], _named_before(sentence.text, match.start()))
+    for match in rule("company.waits_for_another").finditer(sentence.text):
+        here = "same" in (match["where"] or "")
+        if here or not elsewhere.search(match[0].replace(" behind ", " ", 1)):
+            yield _Told(_kind(match["kind"]), None, _named_before(sentence.text, match.start()))
+
+
+def _people(sentence: Sentence) -> Iterator[_Told]:
+    match = rule("account.waited_for").search(sentence.text)
+    if match and match["who"].lower() == "pedestrian":
+        yield _Told(kind_of_word("pedestrian")[1], None, _named_before(sentence.text, match.start()))
+
+
+def _named_before(text: str, end: int) -> str | None:
+    """The vehicle that is named last before a place in a sentence."""
+    return next(reversed(re.findall(r"\bV\d+\b", text[:end])), None)
+
+
+def _kind(words: str) -> ActorKind:
+    return next((kind for word, kind in _KINDS if word in words.lower()), "car")
+
+
+def _free(taken: set[str], letter: str) -> str:
+    return next(f"{letter}{n}" for n in range(1, 99) if f"{letter}{n}" not in taken)

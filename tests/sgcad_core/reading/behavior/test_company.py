@@ -1,0 +1,64 @@
+"""Who is told ahead and touches nobody joins the behavior; who is told elsewhere does not."""
+
+from __future__ import annotations
+
+import pytest
+
+from sgcad_core.reading.behavior.behavior import behavior_of_facts
+from sgcad_core.reading.behavior.company import with_company
+from sgcad_core.reading.layout.layout_facts import layout_of_facts
+from sgcad_core.reading.reading import read
+from sgcad_core.roads.layout import road_spec
+
+BEHIND = "The front of V2, traveling behind V1, contacted the rear of V1."
+
+
+def joined(text):
+    """(id, kind, maneuver) of those who join in, and the actor ahead of whom."""
+    reading = read(text)
+    behavior = behavior_of_facts(reading.crash, road_spec(layout_of_facts(reading.roads)))
+    found = with_company(behavior, reading)
+    assert found.actors[: len(behavior.actors)] == behavior.actors
+    return [(a.id, a.kind, a.maneuver) for a in found.actors[len(behavior.actors) :]], found
+
+
+@pytest.mark.parametrize(("text", "expected"), [
+    ("V1 was traveling north and slowed to a stop for a queue of traffic.",
+     [("V3", "car", "stopped"), ("V4", "car", "stopped")]),
+    ("V1 was traveling north and was stopped behind a school bus.", [("V3", "bus", "stopped")]),
+    ("V1 was traveling north and slowed for another vehicle.", [("V3", "car", "stopped")]),
+    ("V1 was traveling north and stopped for a pedestrian.", [("P1", "pedestrian", "straight")]),
+    ("V1 was northbound, stopped behind a school bus in the northbound lane of the same road.",
+     [("V3", "bus", "stopped")]),
+    ("V1 was traveling north and braked to avoid stopped traffic.",
+     [("V3", "car", "stopped"), ("V4", "car", "stopped")]),
+    ("V1 was traveling north and slowed.", []),
+    ("V1 was traveling north and swerved to avoid stopped traffic.", []),
+    ("V1 was traveling north past a queue of traffic and slowed.", []),
+    ("V1 was traveling north and slowed. A line of vehicles stood in the left lane.", []),
+    ("V1 was traveling north and slowed for an oncoming vehicle.", []),
+])  # fmt: skip
+def test_who_is_told_ahead_joins(text, expected):
+    assert joined(f"{text} V2 was traveling north. {BEHIND}")[0] == expected
+
+
+def test_they_stand_in_the_lane_of_the_one_that_waits():
+    found = joined(
+        f"V1 was traveling north in lane two of three and slowed for stopped traffic. V2 was north. {BEHIND}"
+    )[1]
+    first, ahead = found.actors[0], found.actors[2:]
+    assert {(a.road, a.direction, a.lane, a.exit_road) for a in ahead} == {
+        (first.road, first.direction, first.lane, first.exit_road)
+    }
+
+
+def test_the_first_of_a_row_waits_for_one_without_a_number():
+    text = f"V3, V1 and V2 were northbound. V3 slowed for another vehicle. {BEHIND} V1 struck the rear of V3."
+    assert joined(text)[0] == [("V4", "car", "stopped")]
+
+
+def test_a_queue_of_numbered_vehicles_is_not_drawn_twice():
+    text = (
+        f"V3, V1 and V2 were traveling north. V3 was ahead in stopped traffic. {BEHIND} V1 then struck the rear of V3."
+    )
+    assert joined(text)[0] == []
