@@ -77,7 +77,7 @@ def meeting_places(first: tuple[Actor, Course, float], second: tuple[Actor, Cour
     apart = np.hypot(p_a[:, None, 0] - p_b[None, :, 0], p_a[:, None, 1] - p_b[None, :, 1])
     wish_a, wish_b = preferred_station(*first), preferred_station(*second)
     if _queue(a, b, course_a, course_b):
-        wish_a, wish_b = _before_junction(wish_a, course_a), _before_junction(wish_b, course_b)
+        wish_a, wish_b = _before_junction(wish_a, a, course_a), _before_junction(wish_b, b, course_b)
     cost = 0.5 * apart + _pull(a) * np.abs(s_a - wish_a)[:, None] + _pull(b) * np.abs(s_b - wish_b)[None, :]
     i, j = np.unravel_index(int(np.argmin(cost)), cost.shape)
     gap = float(apart[i, j])
@@ -129,7 +129,10 @@ def _goes_around(actor: Actor, course: Course) -> bool:
     return actor.maneuver in _MID_BLOCK and any(p.around for p in course.passages)
 
 
-def _before_junction(station_m: float, course: Course) -> float:
+def _before_junction(station_m: float, actor: Actor, course: Course) -> float:
+    """A station of a row before the junction; one that stands there keeps its place at the stop line."""
+    if actor.maneuver in STANDING:
+        return station_m
     entries = [p.entry_m for p in course.passages if p.is_junction and p.entry_m > course.start_m]
     return min([station_m, *(e - 8.0 - course.queued_m for e in entries[:1])])
 

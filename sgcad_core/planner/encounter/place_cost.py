@@ -11,7 +11,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, line_m
-from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING, turns_off
+from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, STOP_LINE_M, TURNING, turns_off
 from sgcad_core.planner.lines.departures import departs, in_a_mouth, on_the_road
 from sgcad_core.planner.lines.path import Path
 
@@ -30,6 +30,8 @@ _BEFORE_TURN_M = 12.0
 """Distance before a turn at which the box still points along the road: it starts to turn before the junction."""
 _IN_MOUTH = 0.6
 """Cost of an encounter beside the road where another road joins, for one that leaves the road."""
+_WAITS_BEFORE_M = 8.0
+"""As near before the stop line of a junction one that stands in the road waits at that line."""
 _IN_JUNCTION = 0.8
 """Cost of standing in a junction where a stop is told: drivers wait before it."""
 _SLOWED_IN_JUNCTION = 0.4
@@ -102,5 +104,8 @@ def waiting_zone(role: Role) -> tuple[float, float]:
     """Stations between which a standing actor plausibly waits; in a gore, those of the gore."""
     if role.actor.gore:
         return role.course.start_m, role.course.end_m
-    line, place = line_m(role), role.place.station_m
+    place = role.place.station_m
+    ahead = [p.entry_m - role.course.queued_m for p in role.course.passages if p.is_junction and p.entry_m > place]
+    near = min(ahead, default=math.inf) - STOP_LINE_M - role.size[0] / 2
+    line = near if near - place < _WAITS_BEFORE_M else line_m(role)
     return (line - 10.0, line + 0.5) if role.course.passages else (place - 20.0, place + 20.0)

@@ -124,7 +124,9 @@ class _Rest(Numbering):
 
     def _known(self, phrase: Phrase) -> Actor | None:
         known = super()._known(phrase)
-        if known and known.subject and rule("references.elsewhere").match(phrase.match.string, phrase.match.end()):
+        match = phrase.match
+        beside = not match["automated"] and rule("references.elsewhere").match(match.string, match.end())
+        if known and known.subject and beside:
             known = None  # "the vehicle behind" is not the numbered one itself
         new = known is not None and not known.subject and not known.at and phrase.order is None
         return None if new else known

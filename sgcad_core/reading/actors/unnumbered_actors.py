@@ -77,7 +77,8 @@ class Phrase:
     @property
     def part(self) -> str | None:
         """Where beside the subject: "the lead car" is ahead of it."""
-        return next((PARTS[m] for m in self.match.group().lower().split() if m in PARTS), None)
+        told = next((PARTS[m] for m in self.match.group().lower().split() if m in PARTS), None)
+        return told or ("ahead" if rule("references.up_ahead").match(self.match.string, self.match.end()) else None)
 
     @property
     def kind(self) -> str:

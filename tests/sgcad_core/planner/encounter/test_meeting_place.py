@@ -27,3 +27,10 @@ def test_one_that_slows_for_what_waits_at_a_junction_is_struck_before_it():
     assert made.contact is not None
     k = round(made.contact.t_s / 0.05)
     assert made.trajectories[0].x_m[k] < -9.0
+
+
+def test_one_that_stands_at_a_junction_is_struck_near_its_line():
+    stands = SLOWS.model_copy(update={"maneuver": "stopped"})
+    made = plan(BehaviorSpec(actors=(stands, FOLLOWS), contacts=(REAR_END,)), network("four_leg"))
+    assert made.realised
+    assert -15.5 < made.trajectories[0].x_m[0] < -9.0  # the junction begins at 7.6 m
