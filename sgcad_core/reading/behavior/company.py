@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from sgcad_core.kinds import actor_kind
+from sgcad_core.reading.actors.makes import kind_of
 from sgcad_core.reading.actors.people_objects import kind_of_word
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.reading import Reading
@@ -23,10 +24,6 @@ _QUEUED, _MOST = 2, 12
 _PAIR = 2
 """With more vehicles than those of a contact a queue is one of the numbered ones."""
 _WAITING = ("stopped", "slowing", "straight", "negotiating_curve", "turn_left", "turn_right")
-_KINDS: tuple[tuple[str, ActorKind], ...] = (
-    ("bus", "bus"), ("pickup", "pickup"), ("truck", "truck"), ("van", "van"), ("suv", "suv"),
-    ("motorcycle", "motorcycle"),
-)  # fmt: skip
 
 
 class _Told(NamedTuple):
@@ -100,11 +97,11 @@ def _vehicles(sentence: Sentence) -> Iterator[_Told]:
         where = match["where"] or ""
         in_front = "in front of" in where or "ahead of" in where
         if in_front or not elsewhere.search(f"{match['words']} {where}"):
-            yield _Told(_kind(match["words"]), match["id"], _named_before(sentence.text, match.start()))
+            yield _Told(_vehicle_kind(match["words"]), match["id"], _named_before(sentence.text, match.start()))
     for match in rule("company.waits_for_another").finditer(sentence.text):
         here = "same" in (match["where"] or "")
         if here or not elsewhere.search(match[0].replace(" behind ", " ", 1)):
-            yield _Told(_kind(match["kind"]), None, _named_before(sentence.text, match.start()))
+            yield _Told(_vehicle_kind(match["kind"]), None, _named_before(sentence.text, match.start()))
 
 
 def _people(sentence: Sentence) -> Iterator[_Told]:
@@ -118,8 +115,10 @@ def _named_before(text: str, end: int) -> str | None:
     return next(reversed(re.findall(r"\bV\d+\b", text[:end])), None)
 
 
-def _kind(words: str) -> ActorKind:
-    return next((kind for word, kind in _KINDS if word in words.lower()), "car")
+def _vehicle_kind(words: str) -> ActorKind:
+    """The kind of a vehicle from its words; a car where these name none."""
+    kind = kind_of(words, None)[0]
+    return kind if actor_kind(kind).drives else "car"
 
 
 def _free(taken: set[str], letter: str) -> str:
