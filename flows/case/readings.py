@@ -17,7 +17,6 @@ from sgcad_core.case.records import CrashReport
 ReadBy = Literal["all", "learned", "rules"]
 """Readers of a reading: all of them, the rules with the learned one, the rules alone."""
 _CALLED: dict[ReadBy, str] = {
-    "all": "the reading of all readers",
     "learned": "the reading of the rules and the learned reader",
     "rules": "the rules' reading",
 }

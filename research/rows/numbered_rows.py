@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import random
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -74,6 +75,12 @@ def lines_of(pool: Path) -> Iterator[dict[str, Any]]:
     opened = gzip.open if pool.suffix == ".gz" else open
     with opened(pool, "rt", encoding="utf-8") as file:
         yield from (json.loads(line) for line in file if line.strip())
+
+
+def drawn_lines(pool: Path, limit: int | None) -> list[dict[str, Any]]:
+    """The lines of a pool, or so many drawn from all of its parts."""
+    lines = list(lines_of(pool))
+    return lines if limit is None or limit >= len(lines) else random.Random(0).sample(lines, limit)
 
 
 def part_of(case: Mapping[str, Any]) -> str:

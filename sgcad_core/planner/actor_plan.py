@@ -15,7 +15,7 @@ import numpy as np
 from sgcad_core.geometry.plane import SIDES, Floats, Size
 from sgcad_core.metrics.rest_error import compass_rad
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.encounter.meeting_place import STANDING, STOP_LINE_M, TURNING, Place
+from sgcad_core.planner.encounter.meeting_place import STANDING, TURNING, Place, stop_m
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.path import Path, ramp
 from sgcad_core.planner.motion import ACCELERATION_MPS2
@@ -280,7 +280,7 @@ def start_m(role: Role) -> float:
     behind = role.told.from_rest and (role.side, role.other_side) == ("front", "back") and along_with(role)
     queued_m = (role.size[0] + _QUEUE_M) * behind
     if role.course.turn is not None:
-        return role.course.turn.entry_m - STOP_LINE_M - role.size[0] / 2 - queued_m
+        return stop_m(role.course.turn.entry_m, role.size[0]) - queued_m
     return line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0) - queued_m
 
 
@@ -291,4 +291,4 @@ def line_m(role: Role) -> float:
         return IN_STALL_M
     entries = [p.entry_m for p in role.course.passages if p.entry_m < role.place.station_m]
     at = entries[-1] - role.course.queued_m if entries else role.place.station_m - 6.0
-    return at - STOP_LINE_M - role.size[0] / 2
+    return stop_m(at, role.size[0])

@@ -38,8 +38,7 @@ _INTO_M = 1.0
 
 def led_by(behavior: BehaviorSpec, actor: Actor) -> Actor | None:
     """The actor of the first contact that another one stands ahead of; None for others."""
-    near = behavior.near_crash
-    first = behavior.contacts[0] if behavior.contacts else near.conflict if near else None
+    first = behavior.first_meeting
     touching = {who for c in behavior.contacts for who in (c.striker, c.struck)}
     if first is None or actor.id in touching or actor.id in (first.striker, first.struck):
         return None

@@ -247,6 +247,13 @@ class BehaviorSpec(Spec):
         """What is said of actors beside their maneuvers, by id."""
         return {actor.id: actor.acts for actor in self.actors if actor.acts is not None}
 
+    @property
+    def first_meeting(self) -> Contact | None:
+        """The first contact, else the one that was avoided; None where nobody meets."""
+        if self.contacts:
+            return self.contacts[0]
+        return self.near_crash.conflict if self.near_crash else None
+
 
 class Refusal(Spec):
     """The answer of a writer that finds the evidence too thin or contradictory."""

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import random
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -29,7 +28,7 @@ from torch.nn import functional
 
 from research.rows import narrative_rows
 from research.rows.narrative_rows import Case, case_of
-from research.rows.numbered_rows import lines_of
+from research.rows.numbered_rows import drawn_lines
 from research.training.readers.encoder_batches import BATCH, Lesson, Prepared, batches, lesson, prepared
 from research.training.readers.encoder_net import UNSEEN, EncoderNet, Size
 from research.training.readers.train_numbered_reader import MENDS, Judge, Judged, crossed, judged
@@ -218,9 +217,7 @@ def kept_cases(file: Path | None, pool: Path, limit: int | None) -> list[Case]:
     """The cases of an earlier call's file, else those of the pool, which are then kept there."""
     if file is not None and file.is_file():
         return narrative_rows.load(file)
-    lines = list(lines_of(pool))
-    some = lines if limit is None or limit >= len(lines) else random.Random(0).sample(lines, limit)
-    cases = [case for line in some if (case := case_of(line))]
+    cases = [case for line in drawn_lines(pool, limit) if (case := case_of(line))]
     if file is not None:
         narrative_rows.save(cases, file)
     return cases

@@ -14,7 +14,6 @@ between calls: delete it when rules have changed. `--limit`: so many lines, spre
 from __future__ import annotations
 
 import argparse
-import random
 from collections.abc import Iterator, Sequence
 from multiprocessing import Pool
 from pathlib import Path
@@ -25,7 +24,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, hstack
 
 from research.rows import numbered_rows
-from research.rows.numbered_rows import Row, lines_of, rows_of
+from research.rows.numbered_rows import Row, drawn_lines, rows_of
 from research.training.readers.train_learned_reader import multinomial, softmax
 from research.training.weight_fit import calibration_error, logistic, versus
 from sgcad_core.reading.second_reader.field_claims import kind_of
@@ -185,12 +184,11 @@ def learn(rows: Sequence[Row]) -> Iterator[tuple[str, Kind, bool, list[str]]]:
 
 def read_rows(pool: Path, limit: int | None, processes: int) -> list[Row]:
     """The rows of a pool's lines, or of so many drawn."""
-    lines = list(lines_of(pool))
-    some = lines if limit is None or limit >= len(lines) else random.Random(0).sample(lines, limit)
+    lines = drawn_lines(pool, limit)
     if processes == 1:
-        return [row for line in some for row in rows_of(line)]
+        return [row for line in lines for row in rows_of(line)]
     with Pool(processes) as workers:
-        return [row for found in workers.imap(rows_of, some, chunksize=20) for row in found]
+        return [row for found in workers.imap(rows_of, lines, chunksize=20) for row in found]
 
 
 def kept_rows(file: Path | None, pool: Path, limit: int | None, processes: int) -> list[Row]:

@@ -61,12 +61,17 @@ def preferred_station(actor: Actor, course: Course, length_m: float) -> float:
         own = course.on_road(actor.road) or (course.start_m, course.end_m)
         return (own[0] + own[1]) / 2
     if waits:
-        return node.entry_m - STOP_LINE_M - length_m / 2 - course.queued_m
+        return stop_m(node.entry_m - course.queued_m, length_m)
     if actor.maneuver in _MID_BLOCK and node.around:
         return (node.exit_m + next((p.entry_m for p in ahead if p.entry_m > node.exit_m), node.exit_m)) / 2
     if actor.maneuver in _MID_BLOCK and node.entry_m - _BEFORE_JUNCTION_M > course.start_m:
         return node.entry_m - _BEFORE_JUNCTION_M
     return (node.entry_m + node.exit_m) / 2
+
+
+def stop_m(line_m: float, length_m: float) -> float:
+    """The station of the center of a box that stands before a line."""
+    return line_m - STOP_LINE_M - length_m / 2
 
 
 def meeting_places(first: tuple[Actor, Course, float], second: tuple[Actor, Course, float]) -> tuple[Place, Place]:

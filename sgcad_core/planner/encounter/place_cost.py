@@ -11,7 +11,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, line_m
-from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, STOP_LINE_M, TURNING, turns_off
+from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING, stop_m, turns_off
 from sgcad_core.planner.lines.departures import departs, in_a_mouth, on_the_road
 from sgcad_core.planner.lines.path import Path
 
@@ -106,6 +106,6 @@ def waiting_zone(role: Role) -> tuple[float, float]:
         return role.course.start_m, role.course.end_m
     place = role.place.station_m
     ahead = [p.entry_m - role.course.queued_m for p in role.course.passages if p.is_junction and p.entry_m > place]
-    near = min(ahead, default=math.inf) - STOP_LINE_M - role.size[0] / 2
+    near = stop_m(min(ahead, default=math.inf), role.size[0])
     line = near if near - place < _WAITS_BEFORE_M else line_m(role)
     return (line - 10.0, line + 0.5) if role.course.passages else (place - 20.0, place + 20.0)

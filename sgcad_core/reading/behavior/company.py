@@ -6,13 +6,13 @@ roads and no motion. What is told elsewhere than ahead is not added.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
 from sgcad_core.kinds import actor_kind
 from sgcad_core.reading.actors.makes import kind_of
 from sgcad_core.reading.actors.people_objects import kind_of_word
+from sgcad_core.reading.actors.vehicles import MENTION
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.reading import Reading
 from sgcad_core.reading.text.normalise import Sentence
@@ -36,8 +36,7 @@ class _Told(NamedTuple):
 
 def with_company(behavior: BehaviorSpec, reading: Reading) -> BehaviorSpec:
     """The behavior with the road users that are told ahead of a vehicle of its contact and have none."""
-    near = behavior.near_crash
-    first = behavior.contacts[0] if behavior.contacts else near.conflict if near else None
+    first = behavior.first_meeting
     if first is None:
         return behavior
     actors = list(behavior.actors)
@@ -112,7 +111,7 @@ def _people(sentence: Sentence) -> Iterator[_Told]:
 
 def _named_before(text: str, end: int) -> str | None:
     """The vehicle that is named last before a place in a sentence."""
-    return next(reversed(re.findall(r"\bV\d+\b", text[:end])), None)
+    return next(reversed(MENTION.findall(text[:end])), None)
 
 
 def _vehicle_kind(words: str) -> ActorKind:

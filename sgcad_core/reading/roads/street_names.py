@@ -51,10 +51,8 @@ class StreetNames(NamedTuple):
 def street_names(statements: Iterable[Statement], headings: Mapping[str, Compass]) -> StreetNames:
     """The named streets, each with the axis that most of what is said of it gives."""
     story = [t.text for t in statements if t.role in STORY_ROLES]
-    names = {m["name"].lower() for text in story for known in _KNOWN for m in known.finditer(text)}
-    if not names:
-        return StreetNames({}, None)
-    pattern = rule("street_names.known").given(names=tuple(sorted(names, key=len, reverse=True)))
+    names = _names(story)
+    pattern = _pattern(names)
     votes: dict[str, Counter[Compass]] = {}
     for text in story:
         found = list(_in_text(pattern, text))
@@ -72,13 +70,23 @@ def street_names(statements: Iterable[Statement], headings: Mapping[str, Compass
 
 def driven_on(statements: Iterable[Statement]) -> dict[str, str]:
     """The name of the street that each vehicle is first told to drive on, of those of which one is told."""
-    told = list(statements)
-    streets, found = street_names(told, {}), dict[str, str]()
-    for text in (t.text for t in told if t.role in STORY_ROLES):
-        for one in streets.in_text(text):
+    story = [t.text for t in statements if t.role in STORY_ROLES]
+    pattern, found = _pattern(_names(story)), dict[str, str]()
+    for text in story:
+        for one in _in_text(pattern, text):
             if driver := rule("street_names.driven").search(text[: one.start]):
                 found.setdefault(driver["vehicle"], one.name)
     return found
+
+
+def _names(story: Iterable[str]) -> set[str]:
+    return {m["name"].lower() for text in story for known in _KNOWN for m in known.finditer(text)}
+
+
+def _pattern(names: Iterable[str]) -> re.Pattern[str] | None:
+    """The pattern of known streets; None where none is named."""
+    known = tuple(sorted(names, key=len, reverse=True))
+    return rule("street_names.known").given(names=known) if known else None
 
 
 def _in_text(pattern: re.Pattern[str] | None, text: str) -> Iterator[StreetMention]:
