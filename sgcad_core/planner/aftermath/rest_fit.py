@@ -61,13 +61,11 @@ _WHOLE_AGAIN = 10
 """The same where the two meet again: where they then push each other depends on more."""
 _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
 """Margin inside the allowed error that counts as best."""
-_FACING_SCALE_RAD = math.radians(45.0)
-_PLACE_SCALE_M = 5.0
+_FACING_SCALE_RAD, _PLACE_SCALE_M = math.radians(45.0), 5.0
 """Errors of which half of the cost of an error is reached."""
-_TOLD = 1.0
-_USUAL_SHARE = 0.6
-"""Share of the friction: some braking, some dragging wheels."""
-_SPIN_RAD = math.radians(15.0)
+_TOLD, _USUAL_SHARE = 1.0, 0.6
+"""Cost of a missed part; share of the friction: some braking, some dragging wheels."""
+_SPIN_RAD, _MOST_UNTOLD_RAD, _WHIRLS = math.radians(15.0), math.radians(200.0), 1.3
 
 
 def leaving_the_road(course: CourseTold) -> CourseTold:
@@ -147,13 +145,11 @@ class RestFit:
         """Stated courses of the struck vehicles with a stated end or a second contact."""
         again = {name for pair in self.scene.again for name in pair}
         struck = {name for touch in self.scene.touches for name in (touch.first, touch.second)}
+        told = {name: self.told.get(name, CourseTold()) for name in self.scene.tracks if name in struck}
         return {
-            name: course
-            for name in self.scene.tracks
-            if (course := self.told.get(name, CourseTold())) is not None
-            and name in struck
-            and (not course.rest.empty or course.spin or name in again or name in self._makes_way)
-        }
+            name: course for name, course in told.items()
+            if not course.rest.empty or course.spin or name in again or name in self._makes_way
+        }  # fmt: skip
 
     @cached_property
     def _makes_way(self) -> frozenset[str]:
@@ -220,11 +216,11 @@ class RestFit:
         if course.rest.distance_m is not None:
             off = np.abs(self._way_m(name, ends) - course.rest.distance_m)
             total += _TOLD * (off > near_m(course.rest.distance_m)) + _eased(off / course.rest.distance_m)
-        return total + self._unspun(name, course, ends) if course.spin else total
+        return total + (self._unspun(name, course, ends) if course.spin else self._whirled(name, ends))
 
     def _way_m(self, name: str, ends: Floats) -> Floats:
         """(n,) metres from the place of a vehicle at the first contact to (n, 3) last poses."""
-        way: Floats = np.hypot(*(ends[:, :2] - self.scene.tracks[name].driven[self.scene.contact, :2]).T)
+        way: Floats = np.linalg.norm(ends[:, :2] - self.scene.tracks[name].driven[self.scene.contact, :2], axis=1)
         return way
 
     def _unspun(self, name: str, course: CourseTold, ends: Floats) -> Floats:
@@ -237,6 +233,10 @@ class RestFit:
             off = np.abs(wanted - turned)
             wrong |= off > near_turn_rad(wanted)
         return _TOLD * wrong + _eased(off / (2 * wanted))
+
+    def _whirled(self, name: str, ends: Floats) -> Floats:
+        """(n,) costs of an untold rotation by more than half a turn: more than of a facing that is missed."""
+        return np.where(np.abs(ends[:, 2] - self._came_rad(name)) > _MOST_UNTOLD_RAD, _WHIRLS, 0.0)
 
     def _errors(self, name: str, rest: RestTold, ends: Floats) -> RestErrors:
         """Errors of (n, 3) last poses of a vehicle."""

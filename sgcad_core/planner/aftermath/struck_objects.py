@@ -32,6 +32,10 @@ _LEAST_MPS = 2.6
 """A slower impact is hardly one, and files whose vertices lie 0.11 m apart cannot show it."""
 _DEPTH_M = 0.05
 """Overlap of the undisturbed box with the object at the sample of the impact."""
+_GRAZE_M = 0.02
+"""Overlap of a flank with what it scrapes: deeper, the corner ahead of it would meet the thing head on."""
+_PASSED = 0.6
+"""Share of the way of a sample by which the corner of a flank has passed what the flank scrapes."""
 GLANCE_M = 0.15
 """By which a vehicle overlaps a firm thing beside its way, off which it glances."""
 _ALL_TOLD = 1.0
@@ -199,11 +203,15 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
     for number, side in enumerate(SIDES):
         out = heading + number * math.pi / 2
         outward = (by[0] * math.cos(out) + by[1] * math.sin(out)) / STEP_S
-        if outward < _OUTWARD_MPS:
+        grazes = side == strike.side and is_beside(side) and abs(outward) < _OUTWARD_MPS
+        if outward < _OUTWARD_MPS and not grazes:
             continue
         if is_long(size) and side != "back":
             rank = 0 if side == strike.side or strike.side is None else 1
             yield from ((rank, pose) for pose in _along(track, k, side, size))
+            continue
+        if grazes:
+            yield 0, _grazed(track, k, out, size)
             continue
         if strike.glances and number % 2:
             continue
@@ -218,6 +226,18 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
         yield rank, np.array([
             x + reach * math.cos(out) - left * math.sin(out), y + reach * math.sin(out) + left * math.cos(out), turned,
         ])  # fmt: skip
+
+
+def _grazed(track: Track, k: int, out: float, size: Size) -> Floats:
+    """The pose of a thing that a flank scrapes as the vehicle passes: it reaches into the way by the least that is
+    seen, and the corner that leads has just passed its near edge. `out`: direction in which the flank looks."""
+    (x, y, heading), (before_x, before_y, _) = track.poses[k], track.poses[k - 1]
+    moved = (x - before_x) * math.cos(heading) + (y - before_y) * math.sin(heading)
+    ahead = math.copysign(track.size[0] / 2 - _PASSED * abs(moved) + size[1] / 2, moved)
+    reach = track.size[1] / 2 + size[0] / 2 - _GRAZE_M
+    return np.array([
+        x + ahead * math.cos(heading) + reach * math.cos(out), y + ahead * math.sin(heading) + reach * math.sin(out), out,
+    ])  # fmt: skip
 
 
 def _along(track: Track, k: int, side: Area, size: Size) -> Iterator[Floats]:

@@ -223,3 +223,13 @@ def test_a_steered_run_bends_to_its_side_within_friction(bend) -> None:
         assert math.hypot(one.vx - before[0], one.vy - before[1]) / step < 7.0 * 1.2
     assert one.y * bend > 0
     assert one.heading * bend > 0
+
+
+@pytest.mark.parametrize(("mph", "facing"), [(15, 45.0), (35, 0.0), (50, 45.0)])
+def test_no_more_than_half_a_turn_is_taken_to_a_told_facing(mph: int, facing: float) -> None:
+    speeds = {"V1": mph, "V2": 35}
+    actors = tuple(a.model_copy(update={"speed_mph": speeds[a.id]}) for a in crossing().actors)
+    behavior = crossing().model_copy(update={"actors": actors})
+    _, tracks = planned({"V1": CourseTold(rest=RestTold(facing))}, behavior)
+    turned = np.unwrap(tracks["V1"].heading_rad)
+    assert np.abs(turned - turned[0]).max() <= math.radians(200.0)

@@ -8,12 +8,14 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from sgcad_core.geometry.plane import box_gaps
+from sgcad_core.geometry.plane import Box, box_gaps, contact_area
 from sgcad_core.planner import plan
 from sgcad_core.records.course import CourseTold, RestTold
-from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
+from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact, size_m
 from sgcad_core.roads.surface import road_surface
 from tests.sgcad_core.planner.crash_scenes import network
+
+CAR = (4.7, 1.8)
 
 
 def crash(*things: Actor, more: tuple[Contact, ...] = ()) -> BehaviorSpec:
@@ -81,7 +83,7 @@ def test_a_thing_is_struck_so_fast_that_a_file_shows_it() -> None:
     made = plan(behavior, network("four_leg"))
     track = next(t for t in made.trajectories if t.actor == "V2")
     post = next(t for t in made.trajectories if t.actor == "O1")
-    gaps = box_gaps(track.pose, (4.7, 1.8), post.pose, (0.4, 0.4))
+    gaps = box_gaps(track.pose, CAR, post.pose, (0.4, 0.4))
     hit = int(np.flatnonzero(gaps <= 0)[0])
     assert np.hypot(*(track.pose[hit - 1, :2] - track.pose[hit - 2, :2])) > 0.11
 
@@ -114,3 +116,21 @@ def test_a_firm_thing_stands_beside_the_road(first_mph: int, second_mph: int) ->
     made = plan(behavior.model_copy(update={"actors": actors}), graph)
     post = next(t for t in made.trajectories if t.actor == "O1")
     assert road_surface(graph).off(post.pose[:1, :2])[0][0] > 0.3
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize("size_m", [(0.4, 0.4), (0.5, 0.5), (0.4, 14.0)])
+def test_a_vehicle_that_drives_on_scrapes_a_thing_with_its_told_flank(side: Area, size_m: tuple[float, float]) -> None:
+    rear, ahead = (
+        Actor(id=name, kind="car", road="W", direction="forward", exit_road="E", maneuver="straight", speed_mph=mph)
+        for name, mph in (("V1", 45), ("V2", 25))
+    )
+    post = thing(1).model_copy(update={"length_m": size_m[0], "width_m": size_m[1], "firm": True})
+    contacts = (
+        Contact(striker="V1", struck="V2", striker_area="front", struck_area="back"),
+        Contact(striker="V2", struck="O1", striker_area=side, struck_area="front"),
+    )
+    made = plan(BehaviorSpec(actors=(rear, ahead, post), contacts=contacts), network("four_leg"))
+    (struck, object_met) = (next(t for t in made.trajectories if t.actor == name).pose for name in ("V2", "O1"))
+    hit = int(np.flatnonzero(box_gaps(struck, CAR, object_met, size_m) <= 0)[0])
+    assert contact_area(Box.at(struck[hit], CAR), Box.at(object_met[hit], size_m)) == side
