@@ -9,8 +9,8 @@
   const COLOR = { asphalt: "#5d636a", edge: "#f2f2ee", lane: "#f2f2ee", center: "#efbf3f", stop: "#ffffff", hit: "#d7263d", lit: "#b99a2e", halo: "#ffd84d", cone: "#ff7a1a" };
   const DARK = matchMedia("(prefers-color-scheme: dark)");
   const useTheme = () => Object.assign(COLOR, DARK.matches
-    ? { ground: "#242b2a", verge: "#37403d", path: "#85837b", text: "#e4e7e9", line: "#c3ccd2", faint: "#e58fc4", cursor: "#58b4dc" }
-    : { ground: "#e9ece4", verge: "#d3d8cc", path: "#a9a69c", text: "#22282d", line: "#3b444c", faint: "#a0447a", cursor: "#0b6e99" });
+    ? { ground: "#242b2a", verge: "#37403d", curb: "#8d8f8a", ditch: "#3a4238", embankment: "#303a33", groundLine: "#57625a", path: "#85837b", text: "#e4e7e9", line: "#c3ccd2", faint: "#e58fc4", cursor: "#58b4dc" }
+    : { ground: "#e9ece4", verge: "#d3d8cc", curb: "#8f918b", ditch: "#cfc6ae", embankment: "#dde3cf", groundLine: "#a3a890", path: "#a9a69c", text: "#22282d", line: "#3b444c", faint: "#a0447a", cursor: "#0b6e99" });
   useTheme();
   const WIDTH_M = { edge: 0.15, lane: 0.15, center: 0.2, stop: 0.55 };
   const seated = parent !== window && /[#&]embed\b/.test(location.hash);   // in the desk: the stage alone, which says what is pointed at
@@ -69,6 +69,13 @@
         const asphalt = lit.has(road) ? COLOR.lit : COLOR.asphalt;
         trace(flat); ink.lineWidth = width + pass * 2 + 0.05; ink.strokeStyle = pass ? COLOR.verge : cars ? asphalt : COLOR.path; ink.stroke();
       }
+    }
+    for (const [kind, area] of data.drawing.grounds || []) {      // curbs, ditches, embankments: strips, hatched across
+      trace(area); ink.closePath(); ink.fillStyle = COLOR[kind]; ink.fill();
+      ink.strokeStyle = COLOR.groundLine; ink.lineWidth = kind === "curb" ? Math.max(0.12, 0.9 / box.scale) : 0.12; ink.stroke();
+      if (kind === "curb") continue;
+      const n = area.length;
+      for (let i = 0; i < n / 2; i += 2) { trace([area[i], area[i + 1], area[n - 2 - i], area[n - 1 - i]]); ink.stroke(); }
     }
     for (const gore of data.drawing.gores || []) {         // painted triangles: asphalt, hatched
       trace(gore); ink.closePath(); ink.fillStyle = COLOR.asphalt; ink.fill(); ink.save(); ink.clip();

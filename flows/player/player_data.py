@@ -235,6 +235,7 @@ def _drawing(drawing: Drawing, axes: Mapping[str, float]) -> dict[str, Any]:
         "lines": [[line.style, _rounded(line.points.ravel(), 2)] for line in drawing.lines],
         "crossings": [[round(c.width_m, 2), _rounded(c.points.ravel(), 2)] for c in drawing.crossings],
         "cones": _rounded(drawing.cones.ravel(), 2),
+        "grounds": [[kind, _rounded(area.ravel(), 2)] for kind, area in drawing.grounds],
         "gores": [_rounded(gore.ravel(), 2) for gore in drawing.gores],
         "marks": [
             [m.kind, round(m.x_m, 2), round(m.y_m, 2), round(m.heading_rad, 3), m.directions or m.edge]

@@ -19,8 +19,10 @@ from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.formats.xml import parse_xml
 from sgcad_core.geometry.plane import offset_polyline
 from sgcad_core.kinds import UNPAINTED
-from sgcad_core.roads.closures import cones
-from sgcad_core.roads.gores import gores
+from sgcad_core.records.specs import Ground
+from sgcad_core.roads.areas.closures import cones
+from sgcad_core.roads.areas.gores import gores
+from sgcad_core.roads.areas.roadside import roadsides
 from sgcad_core.roads.lane_graph import ROAD_WORKS, Edge, Lane, LaneGraph
 
 Floats = NDArray[np.float64]
@@ -74,6 +76,8 @@ class Drawing:
     """(n, 2) places of traffic cones."""
     gores: tuple[Floats, ...] = ()
     """Corners of the painted gores at ramps, (n, 2) each."""
+    grounds: tuple[tuple[Ground, Floats], ...] = ()
+    """Ground beside the roads: its kind, and its corners, (n, 2)."""
 
 
 def drawing_of(net_xml: str) -> Drawing:
@@ -96,6 +100,7 @@ def _drawing(graph: LaneGraph, root: Any) -> Drawing:
         tuple(_areas(root)), tuple(strips), tuple(lines), tuple(_crossings(root)), tuple(_marks(root, graph)),
         np.vstack([np.zeros((0, 2)), *(places for _, places in cones(graph))]),
         tuple(gore.corners for gore in gores(graph)),
+        tuple((strip.kind, strip.corners) for strip in roadsides(graph)),
     )  # fmt: skip
 
 

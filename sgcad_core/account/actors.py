@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping
 from sgcad_core.account.inputs import ExecutedCase, is_stated
 from sgcad_core.account.records import Item
 from sgcad_core.kinds import actor_kind
+from sgcad_core.reading.language import of_role
+from sgcad_core.roads.areas.roadside import roadsides
 
 
 def actor_items(made: ExecutedCase) -> Iterator[Item]:
@@ -18,11 +20,23 @@ def actor_items(made: ExecutedCase) -> Iterator[Item]:
         there = vehicle.id in made.tracks
         yield made.item(there, f"vehicles.{vehicle.id}", vehicle.id, why="not in the scenario", text=text)
     for other in made.reading.crash.others:
-        there = other.id in made.tracks
+        there = other.id in made.tracks or _is_driven_over(made, f"others.{other.id}.word", other.word)
         text = f"{other.id}, a {other.word}"
         yield made.item(there, f"others.{other.id}.word", other.word, why="not in the scenario", text=text)
     for vehicle in made.reading.crash.vehicles:
         yield from _kind(made, vehicle.id, kinds)
+
+
+def _is_driven_over(made: ExecutedCase, field: str, word: str) -> bool:
+    """Whether a thing is ground beside a road that a vehicle reaches, one that its sentence names if it names any."""
+    kinds = {rule.yields["ground"] for rule in of_role("ground_beside") if rule.search(word)}
+    strips = [strip for strip in roadsides(made.graph) if strip.kind in kinds]
+    fact = made.told.get(field)
+    telling = [s for s in made.reading.sentences if fact and s.start == fact.start]
+    named = {name for sentence in telling for name in made.reading.named_in(sentence)}
+    ids = [name for name in made.tracks if name.startswith("V") and (name in named or not named)]
+    vehicles = [(made.tracks[name].pose, made.sizes[name]) for name in ids]
+    return any(strip.is_reached(pose, size) for strip in strips for pose, size in vehicles)
 
 
 def _kind(made: ExecutedCase, name: str, kinds: Mapping[str, str]) -> Iterator[Item]:

@@ -15,7 +15,7 @@ from sgcad_core.reading.roads.road_facts import RoadFact
 from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
 from sgcad_core.records.facts import Value
 from sgcad_core.records.specs import Compass
-from sgcad_core.roads.closures import tapers
+from sgcad_core.roads.areas.closures import tapers
 from sgcad_core.roads.compiled_facts import CompiledRoad, headings_agree, junctions, junctions_as_told
 from sgcad_core.roads.lane_graph import network_figures
 from sgcad_core.roads.lane_total_readings import allowed_totals, may_be_of_one_half

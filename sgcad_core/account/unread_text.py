@@ -15,6 +15,7 @@ from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.text.normalise import NUMBERS, Sentence
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES, is_impact
 from sgcad_core.records.course import CourseTold
+from sgcad_core.roads.areas.roadside import roadsides
 from sgcad_core.roads.compiled_facts import junctions
 
 _CALLED, _COUNTED, _FURTHER, _ANIMAL, _MANY_LEGS, _INTRODUCED = (
@@ -188,6 +189,11 @@ def _ground(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
         if not there[wording.id] and (match := wording.search(sentence.text)):
             yield _lacks(sentence, "ground", match[0].lower(), f"{match[0]!r} is named", "none is drawn")
     words = _met(made)
+    drawn = {strip.kind for strip in roadsides(made.graph)}
+    for kind in of_role("ground_beside"):
+        match = kind.search(sentence.text)
+        if match and kind.yields["ground"] not in drawn and not any(match[0].lower() in word for word in words):
+            yield _lacks(sentence, "ground", match[0].lower(), f"{match[0]!r} is named", "none is drawn")
     for match in rule("account.ground").finditer(sentence.text):
         if not any(match[0].lower() in word for word in words):
             yield _lacks(sentence, "ground", match[0].lower(), f"{match[0]!r} is named", "none is drawn")

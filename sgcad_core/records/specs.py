@@ -36,6 +36,8 @@ Median = Literal["none", "painted", "raised", "grass", "barrier"]
 RoadArea = Literal["", "rural", "town", "motorway"]
 CenterLine = Literal["", "double_yellow", "solid_yellow", "broken_yellow"]
 Beside = Literal["bike_lane", "parking", "shoulder", "sidewalk"]
+Ground = Literal["curb", "ditch", "embankment"]
+"""What a vehicle drives over beside the pavement."""
 """What lies beside the lanes of a road, in this order from the lanes outwards."""
 Light = Literal["day", "dusk", "dawn", "dark", "dark_lit"]
 Weather = Literal["clear", "cloudy", "rain", "snow", "sleet", "fog"]
@@ -115,6 +117,10 @@ class ToldRoad(NamedTuple):
     """Whether its speed limit is told; else it is a usual one."""
     area: RoadArea = ""
     center_line: CenterLine = ""
+    ground: tuple[Ground, ...] = ()
+    """Ground beside it."""
+    ground_side: Compass | Literal[""] = ""
+    """The side on which ditches and embankments lie; "" both."""
 
 
 # ------------------------------------------------------------------ road, as a small model or a template says it

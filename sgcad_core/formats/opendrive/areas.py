@@ -13,8 +13,9 @@ from sgcad_core.formats.opendrive.streets import Street
 from sgcad_core.formats.sumo.parameters import KIND
 from sgcad_core.geometry.plane import Floats, parallel_polyline
 from sgcad_core.kinds import DRIVEWAY
-from sgcad_core.roads.closures import cones
-from sgcad_core.roads.gores import gores
+from sgcad_core.roads.areas.closures import cones
+from sgcad_core.roads.areas.gores import gores
+from sgcad_core.roads.areas.roadside import roadsides
 from sgcad_core.roads.lane_graph import LaneGraph
 
 STALL_WIDTH_M = 2.7
@@ -22,7 +23,7 @@ STALL_WIDTH_M = 2.7
 
 
 class Crosswalk(NamedTuple):
-    """A crosswalk over a street, or a gore beside one; ids are those of objects.
+    """A crosswalk over a street, or a gore or ground beside one; ids are those of objects.
 
     `corners`: (n, 2) around it, along and to the left of the street's reference line where that ends (`s_m`).
     """
@@ -47,6 +48,15 @@ def gores_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> t
             s_m = street.driven_end(gore.road, at_end=not gore.leaves)
             found.append(Crosswalk(next(ids), street.id, s_m, _local(street, s_m, gore.corners)))
     return tuple(found)
+
+
+def grounds_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> tuple[tuple[str, Crosswalk], ...]:
+    """(kind, area) of the ground beside the streets, with the next ids."""
+    by_edge = {edge.id: street for street in roads for edge in street.edges}
+    return tuple(
+        (strip.kind, Crosswalk(next(ids), street.id, 0.0, _local(street, 0.0, strip.corners)))
+        for strip in roadsides(graph) if (street := by_edge.get(strip.edge))
+    )  # fmt: skip
 
 
 class Stall(NamedTuple):

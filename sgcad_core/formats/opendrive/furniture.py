@@ -9,7 +9,7 @@ from sgcad_core.formats.opendrive.areas import STALL_WIDTH_M, Cone, Crosswalk, S
 from sgcad_core.formats.opendrive.elements import add_child, decimal_text
 from sgcad_core.formats.opendrive.signals import STOP_LINE_M, Signal, StopLine
 from sgcad_core.formats.xml import Element
-from sgcad_core.roads.closures import CONE_M
+from sgcad_core.roads.areas.closures import CONE_M
 
 STOP_LINE = "stopLine"
 CONE_HEIGHT_M = 0.7
@@ -23,9 +23,10 @@ def add_objects(
     stalls: Sequence[Stall],
     cones: Sequence[Cone] = (),
     gores: Sequence[Crosswalk] = (),
+    grounds: Sequence[tuple[str, Crosswalk]] = (),
 ) -> None:
-    """Stop lines, crosswalks, parking spaces, cones and gores; no <objects> where there are none."""
-    if not (stop_lines or crosswalks or stalls or cones or gores):
+    """Stop lines, crosswalks, parking spaces, cones, gores and ground; no <objects> where there are none."""
+    if not (stop_lines or crosswalks or stalls or cones or gores or grounds):
         return
     objects = add_child(road, "objects")
     for line in stop_lines:
@@ -43,6 +44,8 @@ def add_objects(
         _add_area(objects, walk, ("crosswalk", "zebra", "crosswalk"))
     for gore in gores:
         _add_area(objects, gore, ("roadMark", "gore", "gore"))
+    for kind, ground in grounds:
+        _add_area(objects, ground, ("none", kind, kind))
     for stall in stalls:
         made = add_child(
             objects, "object", id=stall.id, type="parkingSpace", name="stall", dynamic="no", orientation="none"

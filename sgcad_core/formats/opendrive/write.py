@@ -13,7 +13,7 @@ from lxml import etree
 
 from sgcad_core.case.records import Finding
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.opendrive.areas import cones_of, crosswalks_of, gores_of, stalls_of
+from sgcad_core.formats.opendrive.areas import cones_of, crosswalks_of, gores_of, grounds_of, stalls_of
 from sgcad_core.formats.opendrive.connecting import Connector, connecting_curve
 from sgcad_core.formats.opendrive.elements import (
     add_child,
@@ -78,6 +78,7 @@ class _Document:
         self.stalls = {street.id: tuple(stalls_of(street, ids)) for street in roads}
         self.cones = cones_of(graph, roads, ids)
         self.gores = gores_of(graph, roads, ids)
+        self.grounds = grounds_of(graph, roads, ids)
         self.connectors = [self._connector(str(len(roads) + i), link) for i, link in enumerate(links, 1)]
 
     def _connector(self, name: str, link: Connection) -> Connector:
@@ -135,7 +136,8 @@ class _Document:
         lines = [line for line in self.control.stop_lines if line.road == street.id]
         walks = [walk for walk in self.crosswalks if walk.road == street.id]
         gores = [gore for gore in self.gores if gore.road == street.id]
-        add_objects(road, lines, walks, self.stalls[street.id], self.cones.get(street.id, ()), gores)
+        grounds = [ground for ground in self.grounds if ground[1].road == street.id]
+        add_objects(road, lines, walks, self.stalls[street.id], self.cones.get(street.id, ()), gores, grounds)
         add_signals(road, [signal for signal in self.control.signals if signal.road == street.id])
 
     def _type(self, road: Element, street: Street) -> None:

@@ -15,12 +15,13 @@ from lxml import etree
 from sgcad_core import settings
 from sgcad_core.case.records import Finding, PlainXml
 from sgcad_core.errors import InvalidOutput
-from sgcad_core.formats.sumo.parameters import AREA, CENTER_LINE, CONTROL, KIND, LIMIT, MEDIAN, POSTED, USUAL
+from sgcad_core.formats.sumo.parameters import AREA, CENTER_LINE, CONTROL, GROUND, KIND, LIMIT, MEDIAN, POSTED, USUAL
 from sgcad_core.formats.xml import Element, parse_xml, schema_errors, to_text, xml_schema
 from sgcad_core.geometry.globe import Plane
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
 from sgcad_core.records.specs import Beside, Node, NodeControl, Road, RoadSpec, ToldRoad
+from sgcad_core.roads.areas.roadside import ground_beside
 from sgcad_core.roads.connections import Link, links
 from sgcad_core.roads.lane_graph import ROAD_WORKS, edge_id
 from sgcad_core.roads.road_geometry import (
@@ -185,7 +186,10 @@ def _edge(root: Element, way: Roadway, direction: Direction, told: ToldRoad) -> 
     if center:
         etree.SubElement(edge, "lane", index=str(count), allow=CENTER_LANE_CLASS)
     limit = f"{POSTED}{road.speed_limit_mph}" if road.speed_limit_mph and told.posted else USUAL
-    known = {AREA: told.area, CENTER_LINE: told.center_line}
+    other: Direction = "backward" if forward else "forward"
+    apart = not lanes(road, other) or road.median not in ("none", "painted")
+    ground = ground_beside(told, way.left_border(direction), apart=apart)
+    known = {AREA: told.area, CENTER_LINE: told.center_line, GROUND: ground}
     _tell(edge, {KIND: kind, MEDIAN: road.median, LIMIT: limit} | {key: word for key, word in known.items() if word})
 
 

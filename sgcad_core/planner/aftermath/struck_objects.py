@@ -235,9 +235,8 @@ def _grazed(track: Track, k: int, out: float, size: Size) -> Floats:
     moved = (x - before_x) * math.cos(heading) + (y - before_y) * math.sin(heading)
     ahead = math.copysign(track.size[0] / 2 - _PASSED * abs(moved) + size[1] / 2, moved)
     reach = track.size[1] / 2 + size[0] / 2 - _GRAZE_M
-    return np.array([
-        x + ahead * math.cos(heading) + reach * math.cos(out), y + ahead * math.sin(heading) + reach * math.sin(out), out,
-    ])  # fmt: skip
+    x, y = x + ahead * math.cos(heading), y + ahead * math.sin(heading)
+    return np.array([x + reach * math.cos(out), y + reach * math.sin(out), out])
 
 
 def _along(track: Track, k: int, side: Area, size: Size) -> Iterator[Floats]:

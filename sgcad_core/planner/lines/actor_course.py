@@ -22,7 +22,7 @@ from sgcad_core.planner.lines.path import Path, bezier, draw, end_heading
 from sgcad_core.planner.lines.route import Route, Way, find_route
 from sgcad_core.planner.motion import LATERAL_MPS2
 from sgcad_core.records.specs import Actor
-from sgcad_core.roads.closures import taper_of
+from sgcad_core.roads.areas.closures import taper_of
 from sgcad_core.roads.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
 from sgcad_core.units import MPS_PER_MPH
 

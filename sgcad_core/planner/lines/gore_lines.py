@@ -15,7 +15,7 @@ from sgcad_core.planner.encounter.meeting_place import STANDING
 from sgcad_core.planner.lines.actor_course import Course, Passage
 from sgcad_core.planner.lines.path import bezier, draw
 from sgcad_core.records.specs import Actor, BehaviorSpec
-from sgcad_core.roads.gores import Gore, gores
+from sgcad_core.roads.areas.gores import Gore, gores
 from sgcad_core.roads.lane_graph import LaneGraph, road_of
 
 NO_GORE = "the road has no gore that it could be in"

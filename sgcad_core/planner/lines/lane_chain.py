@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from sgcad_core.planner.lines.route import Route, Way, turn_angle
 from sgcad_core.records.specs import Actor
-from sgcad_core.roads.closures import merging_line, taper_of
+from sgcad_core.roads.areas.closures import merging_line, taper_of
 from sgcad_core.roads.lane_graph import Connection, Lane, LaneGraph, edge_id, road_of
 
 _ONWARD_RAD = 0.6

@@ -19,7 +19,7 @@ from sgcad_core.reading.roads.street_names import StreetNames, street_names
 from sgcad_core.reading.text.compass import compass_of, turned
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, STORY_ROLES
 from sgcad_core.reading.text.speeds import Speed
-from sgcad_core.records.specs import CenterLine, Compass
+from sgcad_core.records.specs import CenterLine, Compass, Ground
 
 
 class Curve(NamedTuple):
@@ -216,7 +216,9 @@ def rural_source(statements: tuple[Statement, ...]) -> Source | None:
     return next((Source(t.number, m[0], _RURAL.id) for t in story if (m := _RURAL.search(t.text))), None)
 
 
-def center_line(story: Iterable[str]) -> CenterLine:
-    """The told marking between the directions; "" where none is told, or both a solid and a broken one."""
+def painted_and_beside(story: Sequence[str]) -> tuple[CenterLine, tuple[Ground, ...]]:
+    """The told marking between the directions, "" where none is told, or both a solid and a broken one; and the kinds
+    of ground that are named beside the roads."""
     lines = [r.yields["line"] for r in of_role("center_line") if any(map(r.search, story))]
-    return lines[0] if len(lines) == 1 else ""
+    grounds = [r.yields["ground"] for r in of_role("ground_beside") if any(map(r.search, story))]
+    return lines[0] if len(lines) == 1 else "", tuple(dict.fromkeys(grounds))

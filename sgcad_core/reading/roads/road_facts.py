@@ -34,7 +34,14 @@ from sgcad_core.reading.motion.absolute_headings import turned_to_roads
 from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.roads.lanes import LaneFacts
-from sgcad_core.reading.roads.road_details import Curve, SpeedLimit, center_line, curves, rural_source, speed_limits
+from sgcad_core.reading.roads.road_details import (
+    Curve,
+    SpeedLimit,
+    curves,
+    painted_and_beside,
+    rural_source,
+    speed_limits,
+)
 from sgcad_core.reading.roads.road_mentions import Kind, RoadMention, axis_of, road_mentions
 from sgcad_core.reading.roads.road_merge import MergedRoad, merge_roads
 from sgcad_core.reading.roads.work_zones_openings import (
@@ -42,14 +49,16 @@ from sgcad_core.reading.roads.work_zones_openings import (
     ClosedLanes,
     closed_lanes,
     in_gores,
+    keeps_lane_open,
     median_opening,
     names_closure,
     names_gore,
+    undrawn,
     with_entered_median,
 )
 from sgcad_core.reading.text.compass import AXIS_NAMES, COMPASS, turned
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
-from sgcad_core.records.specs import Beside, CenterLine, Compass, RoadLayout
+from sgcad_core.records.specs import Beside, CenterLine, Compass, Ground, RoadLayout
 
 
 @dataclass(frozen=True)
@@ -106,6 +115,8 @@ class RoadFacts:
     `sgcad_core.reading.second_reader.field_claims`)."""
     taken: frozenset[str] = frozenset()
     center_line: CenterLine = ""
+    ground: tuple[Ground, ...] = ()
+    """Ground beside its roads that the story names, and no vehicle is stopped by."""
 
     def lists(self, axis: Compass) -> bool:
         """Whether the story tells every lane of both legs on an axis, leg by leg, and turn lanes among them."""
@@ -142,7 +153,8 @@ def roads_of(statements: tuple[Statement, ...], roster: Roster, crash: CrashFact
     in_gore = in_gores(statements)
     leaves = (any(map(_EXIT_RAMP.search, story)) or bool(in_gore)) and not any(map(_ENTRANCE_RAMP.search, story))
     shut = closed_lanes(statements, driven)
-    closed = shut if shut and _closable(shut, junction, roads) else None
+    on = next((r.lanes for r in roads if shut and r.kind not in JOINING and r.axis == axis_of(shut.toward)), None)
+    closed = shut if shut and junction.kind == "none" and keeps_lane_open(shut, on or LaneFacts()) else None
     opens = median_opening(statements)
     opening = opens if junction.kind == "none" and not closed else None
     gore = in_gore if junction.kind == RAMP else {}
@@ -153,26 +165,12 @@ def roads_of(statements: tuple[Statement, ...], roster: Roster, crash: CrashFact
         GORE: (names_gore(statements), gore),
     }
     roads = tuple(uncounted(r) if r.axis and _listed(approaches, junction, r.axis) else r for r in roads)
-    junction = replace(junction, unsupported=_undrawn(unsupported_places(statements), places))
+    junction = replace(junction, unsupported=undrawn(unsupported_places(statements), places))
     if closed and not closed.side_stated:
         notes = (*notes, "which lane is closed is not told")
     told_places = (merge_lane, beside, walked, any(map(_URBAN.search, story)), closed, opening, leaves)
-    return RoadFacts(roads, junction, crash, notes, *told_places, approaches, center_line=center_line(story))
-
-
-def _undrawn(named: tuple[str, ...], places: Mapping[str, tuple[object, object]]) -> tuple[str, ...]:
-    """Kinds of places that are named and not drawn; `places`: of some kinds what is told and what is drawn."""
-    told = [kind for kind, (seen, drawn) in places.items() if seen and not drawn]
-    return tuple(dict.fromkeys([*(kind for kind in named if not places.get(kind, (None, None))[1]), *told]))
-
-
-def _closable(closed: ClosedLanes, junction: JunctionFacts, roads: tuple[RoadFact, ...]) -> bool:
-    """Whether closed lanes can be drawn: on a road without a junction that keeps a lane open that way."""
-    lanes = next((r.lanes for r in roads if r.kind not in JOINING and r.axis == axis_of(closed.toward)), LaneFacts())
-    counted = lanes.toward.get(closed.toward) or lanes.each_way
-    if counted is None and lanes.total:
-        counted = lanes.total if lanes.one_way or lanes.divided else lanes.total // 2
-    return junction.kind == "none" and (counted is None or counted > closed.count)
+    line, ground = painted_and_beside(story)
+    return RoadFacts(roads, junction, crash, notes, *told_places, approaches, center_line=line, ground=ground)
 
 
 def _alleys(mentions: tuple[RoadMention, ...], crash: CrashFacts) -> tuple[tuple[RoadMention, ...], CrashFacts]:

@@ -1,5 +1,5 @@
 """What a report tells of drawn roads beyond their lanes: whether a limit is posted or assumed, the area, the
-center line.
+center line, ground beside it.
 
 Knows the road facts and the ids of a layout's roads; no file format.
 """
@@ -7,7 +7,7 @@ Knows the road facts and the ids of a layout's roads; no file format.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import get_args
+from typing import Literal, get_args
 
 from sgcad_core.kinds import DRIVEWAY, RAMP
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
@@ -23,7 +23,11 @@ def told_roads(facts: RoadFacts, spec: RoadSpec) -> Mapping[str, ToldRoad]:
     told = {road.id: _as_told(road, _facts_of(road, facts), in_town) for road in spec.roads}
     streets = [road for road in spec.roads if _facts_of(road, facts)]
     line = facts.center_line if facts.junction.kind == "none" else ""  # at a junction it may be that of either road
-    return told | {road.id: told[road.id]._replace(center_line=line) for road in streets if line}
+    told |= {road.id: told[road.id]._replace(center_line=line) for road in streets if line}
+    side = _side_left(facts)
+    return told | {
+        road.id: told[road.id]._replace(ground=facts.ground, ground_side=side) for road in streets if facts.ground
+    }
 
 
 def _facts_of(road: Road, facts: RoadFacts) -> list[RoadFact]:
@@ -42,3 +46,22 @@ def _as_told(road: Road, facts: list[RoadFact], in_town: bool) -> ToldRoad:
         "motorway" if any(f.kind == "freeway" for f in facts) else "rural" if any(f.rural for f in facts) else town
     )
     return ToldRoad(posted=road.speed_limit_mph in limits, area=area)
+
+
+def _side_left(facts: RoadFacts) -> Compass | Literal[""]:
+    """The side of the compass on which vehicles leave the road; "" where it is not told, or several are."""
+    headings = {v.id: v.heading for v in facts.crash.vehicles}
+    sides = {_as_compass(c.departs, headings.get(name)) for name, c in facts.crash.courses.items() if c.departs}
+    (side,) = sides if len(sides) == 1 else (None,)
+    return side or ""
+
+
+def _as_compass(departs: str, heading: Compass | None) -> Compass | None:
+    """The side of a departure; None where it hangs on a heading that is not known."""
+    order = get_args(Compass)
+    if departs in order:
+        return departs  # type: ignore[return-value]
+    if departs not in ("left", "right") or heading is None:
+        return None
+    found: Compass = order[(order.index(heading) + (2 if departs == "right" else -2)) % len(order)]
+    return found

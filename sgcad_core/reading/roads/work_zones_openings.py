@@ -5,7 +5,7 @@ Reads resolved sentences and the vehicles' facts. Knows no lane that is drawn an
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -14,6 +14,7 @@ from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.motion.motion_record import Source
+from sgcad_core.reading.roads.lanes import LaneFacts
 from sgcad_core.reading.roads.road_merge import MergedRoad
 from sgcad_core.reading.text.normalise import NUMBERS
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
@@ -117,3 +118,17 @@ def _left_by(v: VehicleFacts) -> Side:
     """The side on which the lane lies that a vehicle leaves, as far as that is told."""
     word: Side = "left" if v.lane_word == "left" else "right"
     return _AWAY.get(v.maneuver, word)
+
+
+def keeps_lane_open(closed: ClosedLanes, lanes: LaneFacts) -> bool:
+    """Whether a road with some lanes closed keeps one open that way, as far as its lanes are counted."""
+    counted = lanes.toward.get(closed.toward) or lanes.each_way
+    if counted is None and lanes.total:
+        counted = lanes.total if lanes.one_way or lanes.divided else lanes.total // 2
+    return counted is None or counted > closed.count
+
+
+def undrawn(named: tuple[str, ...], places: Mapping[str, tuple[object, object]]) -> tuple[str, ...]:
+    """Kinds of places that are named and not drawn; `places`: of some kinds what is told and what is drawn."""
+    told = [kind for kind, (seen, drawn) in places.items() if seen and not drawn]
+    return tuple(dict.fromkeys([*(kind for kind in named if not places.get(kind, (None, None))[1]), *told]))

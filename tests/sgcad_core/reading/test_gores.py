@@ -9,7 +9,7 @@ from flows.player.road_shapes import drawing_of
 from sgcad_core.case.records import RoadNetwork, Scenario
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.reading.reading import read
-from sgcad_core.roads.gores import WIDEST_M, gores
+from sgcad_core.roads.areas.gores import WIDEST_M, gores
 from tests.sgcad_core.reading.place_cases import assert_passes_what_roads_pass, written
 
 BACK = (

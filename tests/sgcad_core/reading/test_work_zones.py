@@ -13,7 +13,7 @@ from sgcad_core.planner.lines.actor_course import find_course
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.reading import read
 from sgcad_core.records.specs import Actor, Leg, RoadLayout
-from sgcad_core.roads.closures import cones, tapers
+from sgcad_core.roads.areas.closures import cones, tapers
 from sgcad_core.roads.layout import road_spec
 from tests.sgcad_core.reading.place_cases import assert_passes_what_roads_pass, written
 

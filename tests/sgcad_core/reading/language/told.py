@@ -62,6 +62,7 @@ def _besides(reading: Reading) -> dict[str, object]:
         "near": bool(near), "near.clearance_m": near.clearance_m if near else None,
         "roads.merge_lane": roads.merge_lane, "roads.crosswalk": roads.crosswalk, "roads.urban": roads.urban,
         "roads.center_line": roads.center_line or None,
+        "roads.ground": list(roads.ground) or None,
         "roads.beside": roads.beside, "roads.leaves": roads.leaves, "junction.unsupported": roads.junction.unsupported,
         "junction.circle_lanes": roads.junction.circle_lanes, "junction.skew_deg": roads.junction.skew_deg,
         "junction.offset": roads.junction.offset, "roads.highway": any(road.lanes.highway for road in roads.roads),

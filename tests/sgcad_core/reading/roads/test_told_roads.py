@@ -1,5 +1,7 @@
 """What a report tells of drawn roads beyond their lanes."""
 
+import pytest
+
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.reading.layout.layout_facts import Defaults, layout_of_facts
 from sgcad_core.reading.reading import read
@@ -38,3 +40,22 @@ def test_a_freeway_is_a_motorway():
     text = "V1 was northbound in lane one of a divided interstate highway. The front of V1 struck the back of V2."
     found, _ = told(text)
     assert "motorway" in {road.area for road in found.values()}
+
+
+DEPARTS = (
+    "V1 was traveling {heading} on a two-lane road. V1 departed the road to the {side}, went down an embankment and "
+    "struck a tree."
+)
+
+
+@pytest.mark.parametrize(("heading", "side", "looks"), [
+    ("north", "right", "E"), ("north", "left", "W"), ("southwest", "right", "NW"), ("east", "left", "N"),
+])  # fmt: skip
+def test_an_embankment_lies_where_the_road_is_left(heading, side, looks):
+    found, _ = told(DEPARTS.format(heading=heading, side=side))
+    assert {(road.ground, road.ground_side) for road in found.values()} == {(("embankment",), looks)}
+
+
+def test_ground_without_a_told_side_lies_on_both():
+    found, _ = told("V1 was traveling north on a two-lane road with ditches. The front of V1 struck a deer.")
+    assert {(road.ground, road.ground_side) for road in found.values()} == {(("ditch",), "")}
