@@ -140,7 +140,29 @@ def _contact(reading: Reading, sentence: Sentence, read: _Read) -> bool:
 
 def _motion(reading: Reading, sentence: Sentence, read: _Read) -> bool:
     late = sentence.start > read.first_contact
-    return late or read.has(sentence.start, "vehicles.") or bool(read.acts.get(sentence.start))
+    return (
+        late or read.has(sentence.start, "vehicles.") or bool(read.acts.get(sentence.start))
+        or _is_retold(reading, reading.text_of(sentence).strip())
+    )  # fmt: skip
+
+
+def _is_retold(reading: Reading, text: str) -> bool:
+    """Whether a sentence says no more than what was read elsewhere: a turn, a place that is left or entered, who is
+    behind; or how one moved who is struck on foot."""
+    crash = reading.crash
+    if rule("account.retold_entering").search(text):
+        return reading.roads.junction.kind != "none" or len(reading.roads.roads) > 1
+    if turn := rule("account.retold_turn").search(text):
+        made = crash.vehicle(turn["who"])
+        return made is not None and f"turn_{turn['side1'] or turn['side2']}" in (made.maneuver, made.meant)
+    if behind := rule("account.retold_behind").search(text):
+        pair = (behind["who"], behind["ahead"])
+        return any((c.striker, c.struck) == pair and c.struck_area == "back" for c in crash.contacts)
+    if leaves := rule("account.retold_leaving").search(text):
+        came = crash.vehicle(leaves["who"])
+        return came is not None and (came.origin or "").startswith(leaves["place"].replace(" ", "_"))
+    walks = rule("account.walks_in").search(text)
+    return walks is not None and any(walks["word"] in other.word.lower() for other in crash.others)
 
 
 _HEARD: dict[str, Callable[[Reading, Sentence, _Read], bool]] = {

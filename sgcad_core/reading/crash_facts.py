@@ -142,7 +142,7 @@ def _vehicle(
     v: VehicleDescription, motion: VehicleMotion, inferred: CrashInferred, acts: tuple[Act, ...]
 ) -> VehicleFacts:
     """One vehicle's facts put together."""
-    meant = meant_turn(motion)
+    meant = meant_turn(motion, inferred.maneuvers[v.id])
     from_stop = inferred.maneuvers[v.id] in _FROM_REST and starts_from_rest(of_actor(acts, v.id))
     over = from_stop and inferred.speeds.get(v.id, 0) > FROM_STOP_MPH and _told_before_stop(motion, inferred, v.id)
     return VehicleFacts(

@@ -224,9 +224,13 @@ def _standing(motion: VehicleMotion, hit: tuple[Area | None, ...]) -> bool:
     return from_behind or not _moved_on(motion, stops[0])
 
 
-def meant_turn(motion: VehicleMotion) -> Decision | None:
-    """The turn that a vehicle waited, slowed or wanted to make."""
+def meant_turn(motion: VehicleMotion, maneuver: Maneuver | None = None) -> Decision | None:
+    """The turn that a vehicle waited, slowed or wanted to make; of one that did no more than stop or slow (`maneuver`)
+    also one that is told behind that ("stopped to turn left")."""
     wants = [d for d in motion.cues if d.kind.startswith("want_turn_")]
+    if not wants and maneuver in ("stopped", "slowing"):
+        since = min((d.when for d in motion.cues if d.kind == maneuver), default=None)
+        wants = [d for d in motion.cues if d.kind in _TURNS and since is not None and d.when > since]
     return _as_told(max(wants, key=lambda d: d.weight)) if wants else None
 
 

@@ -119,6 +119,30 @@ def test_what_seems_told_and_was_not_read_is_named(text, unread) -> None:
         assert one.kind == "unread"
 
 
+CROSSING = "V1 was northbound on a road and V2 was eastbound on an intersecting road. "
+STRUCK = " The front of V2 struck the left side of V1."
+
+
+@pytest.mark.parametrize(("before", "told", "after", "heard"), [
+    (CROSSING, "V1 and V2 entered the intersection simultaneously.", STRUCK, True),
+    (CROSSING, "V1 and V2 entered the intersection side by side.", STRUCK, False),
+    ("V1 was northbound and V2 behind it.", "V1 and V2 entered the intersection.", " V2 struck the back of V1.", True),
+    (CROSSING + "V1 turned left.", "V1 began to turn left at the intersection.", STRUCK, True),
+    ("V1 and V2 were northbound.", "V1 was traveling behind V2.", " The front of V1 struck the back of V2.", True),
+    ("V1 and V2 were northbound.", "V2 was traveling behind V1.", " The front of V1 struck the back of V2.", False),
+    ("V1 was northbound, leaving a driveway. V2 was eastbound.", "V1 exited the driveway.", STRUCK, True),
+    ("V1 was northbound.", "A deer ran from the right into the lane of V1.", " V1 struck the deer.", True),
+    ("V1 was northbound.", "A dog crossed the path of V1.", " V1 struck a tree.", False),
+])  # fmt: skip
+def test_what_is_only_told_once_more_is_not_unread(before, told, after, heard) -> None:
+    text = before + " " + told + after
+    one = made(text)
+    start = text.index(told)
+    one.reading = replace(one.reading, timeline=tuple(a for a in one.reading.timeline if a.start != start),
+                          facts=tuple(f for f in one.reading.facts if f.start != start))  # fmt: skip
+    assert any(item.field == "text.motion" and item.start == start for item in unread_clauses(one)) != heard
+
+
 def test_a_field_of_which_two_things_are_told_contradicts_itself() -> None:
     found = [*contradictions(made("V1 was traveling north. V1 was traveling south. V1 struck V2, which was parked."))]
     assert [one.field for one in found] == ["vehicles.V1.heading"]

@@ -762,3 +762,15 @@ def test_a_corner_whose_flank_is_not_told_may_be_any_of_its_sides() -> None:
     first = read(text).crash.contacts[0]
     assert (first.struck_area, first.struck_may, first.areas_stated) == ("back", ("back", "left", "right"), False)
     assert (first.striker_area, first.striker_may) == ("right", ("right",))
+
+
+@pytest.mark.parametrize(("text", "meant"), [
+    ("V2 stopped to turn left and V1 rear-ended V2.", "turn_left"),
+    ("V2 stopped at the intersection to take a right turn. The front of V1 struck the back of V2.", "turn_right"),
+    ("V2 was stopped and attempting a left turn into a lot. The front of V1 struck the back of V2.", "turn_left"),
+    ("V2 stopped for traffic. The front of V1 struck the back of V2.", None),
+])  # fmt: skip
+def test_a_turn_that_is_told_behind_a_stop_is_meant(text: str, meant: str | None) -> None:
+    vehicle = read(f"V1 and V2 were westbound. {text}").crash.vehicle("V2")
+    assert vehicle is not None
+    assert (vehicle.maneuver, vehicle.meant) == ("stopped", meant)
