@@ -123,7 +123,7 @@ def _headings(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec, ways: _W
         wanted = angle_of(fact.heading) - square_rad(fact, way)
         along = (way.start_rad, way.end_rad, way.heading_rad)
         off = min(apart(h, wanted) for h in along)
-        if goes_tail_first(fact):  # it may face along its way or go along it backward
+        if fact.maneuver == "backing":  # it may face along its way or go along it backward
             off = min(off, *(apart(h, wanted + math.pi) for h in along))
         if off > _FAR_RAD:
             found = _finding(

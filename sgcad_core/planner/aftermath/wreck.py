@@ -57,8 +57,9 @@ _HELD_S = 0.11
 """A touch is kept for two samples, so that samples, and files with fewer vertices, show it."""
 _GIVES_S = 0.1
 """Time for which a thing that gives way is pushed along."""
-_TOLD_S, _TOLD_HELD_S = 0.2, 0.25
-"""Time for which the bodies of a stated touch hold, and for which the touch is kept: vertices lie 0.11 m apart."""
+_TOLD_S, _TOLD_HELD_S, _SLOW_MPS = 0.2, 0.25, 2.2
+"""Time for which the bodies of a stated touch hold, and for which the touch is kept, as of bodies so slow that samples
+lie nearer than the vertices of a file (0.11 m)."""
 _DEEPEST_M = 0.03
 """Deeper overlaps are parted at once."""
 _ROUNDS, _ROUNDS_OF_MANY = 6, 60
@@ -93,7 +94,7 @@ class Wreck:
 
     def __post_init__(self) -> None:
         self.named: Mapping[str, Mover] = {m.name: m for m in self.movers}
-        self._movable = [m for m in self.movers if not m.fixed]
+        self._movable, self._lasting = [m for m in self.movers if not m.fixed], set(self.told)
 
     def settle(self, until: int | None = None) -> tuple[dict[str, Floats], list[Touch]]:
         """(count, 3) poses by name, and the touches in the order in which they happen. `until`: stop there; the bodies
@@ -194,10 +195,8 @@ class Wreck:
             return gaps
         corners = [touch_points(a.body, b.body) for a, b, _ in touching]
         new = [] if self.hitches or len(touching) > 1 else [t for t in touching if self._is_new(*t[:2])]
-        wanted = [
-            blow((a.body, b.body), (center_of(corners[0]), seen.normal), self.restitution, self.friction)
-            for a, b, seen in new
-        ]
+        wanted = [blow((a.body, b.body), (center_of(corners[0]), seen.normal), self.restitution, self.friction)
+                  for a, b, seen in new]  # fmt: skip
         for (a, b, seen), points in zip(touching, corners, strict=True):
             at = center_of(points)
             collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample), self.friction)
@@ -249,6 +248,7 @@ class Wreck:
         if coming and seen.gap_m > -SEEN_M:
             return False
         self.touches[key] = self.now
+        self._lasting |= {frozenset(key)} if any(0.0 < m.body.speed < _SLOW_MPS for m in (a, b)) else set()
         for m in (a, b):
             self._release(m, sample)
         self.gone |= {key} if glances(a, b) else set()
@@ -286,13 +286,13 @@ class Wreck:
     def _held_s(self, a: Mover, b: Mover, sample: int) -> float:
         """Time for which two touching bodies still hold; 0 or less where they may part."""
         since = self.touches[key_of(a, b)]
-        if frozenset((a.name, b.name)) in self.told and key_of(a, b) not in self.crushes.pulses:
+        if frozenset((a.name, b.name)) in self._lasting and key_of(a, b) not in self.crushes.pulses:
             return since + _TOLD_S - self.now
         return (sample + 1) * STEP_S - self.now if since > sample * STEP_S else 0.0
 
     def _part(self, a: Mover, b: Mover, seen: Separation) -> bool:
         """Moves two overlapping bodies apart, places only, without velocity. Whether they were moved."""
-        for_s = _TOLD_HELD_S if frozenset((a.name, b.name)) in self.told else _HELD_S
+        for_s = _TOLD_HELD_S if frozenset((a.name, b.name)) in self._lasting else _HELD_S
         held = self.now - self.touches[key_of(a, b)] < for_s and seen.gap_m > -_DEEPEST_M
         if seen.gap_m >= APART_M or held:
             return False
