@@ -159,19 +159,19 @@ class _Builder:
 
     def _through(self, road: RoadFact, stem: Compass | None) -> tuple[Leg, ...]:
         axis = road.axis or "N"
-        lanes = self._carriageway(road)
         ends = (turned(axis, 180), axis)
-        return tuple(self._leg(road, lanes, end, far=stem is not None) for end in ends)
+        return tuple(self._leg(road, self._on_leg(road, end), end, far=stem is not None) for end in ends)
+
+    def _on_leg(self, road: RoadFact, end: Compass) -> Carriageway:
+        return self._carriageway(replace(road, lanes=road.lanes.on_leg(end)))
 
     def _crossing(self, road: RoadFact, main: RoadFact, stem: Compass | None) -> tuple[Leg, ...]:
-        lanes = self._carriageway(road)
         axis = road.axis or "N"
         if stem is None:
-            return tuple(self._leg(road, lanes, end) for end in (turned(axis, 180), axis))
+            return tuple(self._leg(road, self._on_leg(road, end), end) for end in (turned(axis, 180), axis))
         at = stem if axis_of(stem) != main.axis else turned(main.axis or "N", 90)
-        if axis_of(at) != axis:
-            lanes = self._carriageway(RoadFact(axis_of(at), road.kind, road.lanes, road.vehicles))
-        return (self._leg(road, lanes, at),)
+        there = road if axis_of(at) == axis else RoadFact(axis_of(at), road.kind, road.lanes, road.vehicles)
+        return (self._leg(road, self._carriageway(there), at),)
 
     def _with_driveway(self, main: RoadFact) -> tuple[Leg, ...]:
         stem = self._stem(main)

@@ -49,6 +49,8 @@ class LaneFacts:
     """ "a five-lane highway": a total of three and more is told of a highway."""
     own: int | None = None
     """Lanes in the direction of the vehicle that the text speaks of: "in lane two of three lanes"."""
+    leg_totals: dict[Compass, int] = field(default_factory=dict)
+    """The totals by the leg on which the vehicle comes whose road they are told of: opposite approaches may differ."""
     where: Mapping[str, Source] = field(default_factory=dict, compare=False, repr=False)
     """Where each of them was read, by the names of `sgcad_core.reading.roads.lane_sources.stated_values`."""
 
@@ -56,6 +58,11 @@ class LaneFacts:
     def empty(self) -> bool:
         """Whether nothing at all was found."""
         return replace(self, one_lane=False, highway=False) == LaneFacts()
+
+    def on_leg(self, bearing: Compass) -> LaneFacts:
+        """The lanes with the total of one leg, where another one is told of it."""
+        total = self.leg_totals.get(bearing, self.total) if self.total and not self.one_way else self.total
+        return replace(self, total=total)
 
 
 # ------------------------------------------------------------------ whole-road words

@@ -58,7 +58,7 @@ def merged(first: LaneFacts, more: LaneFacts) -> LaneFacts:
         one_way_toward=first.one_way_toward or more.one_way_toward,
         center_turn_lane=first.center_turn_lane or more.center_turn_lane, median=first.median or more.median,
         divided=more.divided if first.divided is None else first.divided, one_lane=first.one_lane or more.one_lane,
-        highway=first.highway or more.highway,
+        highway=first.highway or more.highway, leg_totals={**more.leg_totals, **first.leg_totals},
     )  # fmt: skip
     return with_sources_of_both(found, first, more)
 
@@ -76,7 +76,7 @@ def merge_roads(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]
         if mention.kind in JOINING:
             _special(roads, mention, headings)
             continue
-        _road_of(roads, mention, headings).take(_with_own(mention, headings))
+        _road_of(roads, mention, headings).take(_with_leg(_with_own(mention, headings), headings))
     if not roads and any(not m.lanes.empty for m in shared):
         roads.append(MergedRoad(None))
     roads = _settled(roads, headings)
@@ -99,6 +99,14 @@ def _with_own(m: RoadMention, headings: Mapping[str, Compass]) -> RoadMention:
         return m
     where = derived_sources(m.lanes, f"toward {way}", "own")
     return replace(m, lanes=replace(m.lanes, toward={**m.lanes.toward, way: m.lanes.own}, where=where))
+
+
+def _with_leg(m: RoadMention, headings: Mapping[str, Compass]) -> RoadMention:
+    """ "V1 was southbound on a five-lane road": five lanes on the leg north of a junction, on which it comes."""
+    ways = {headings[v] for v in m.vehicles if v in headings}
+    if m.lanes.total is None or m.how != "on" or len(ways) != 1:
+        return m
+    return replace(m, lanes=replace(m.lanes, leg_totals={turned(ways.pop(), 180): m.lanes.total}))
 
 
 def _informative(m: RoadMention) -> bool:

@@ -66,3 +66,22 @@ def test_a_leg_by_which_nobody_comes_has_no_control() -> None:
     text = AT + "V1 was northbound on a one-way street and V2 was eastbound. All approaches have traffic signals."
     legs = _legs(text)
     assert [legs["S"].control, legs["N"].control] == ["signal", "none"]
+
+
+@pytest.mark.parametrize(("south", "north", "counts"), [
+    ("five", "four", {"N": 5, "S": 4}), ("two", "three", {"N": 2, "S": 3}), ("four", "four", {"N": 4, "S": 4}),
+])  # fmt: skip
+def test_opposite_approaches_have_the_totals_told_of_their_vehicles(
+    south: str, north: str, counts: dict[str, int]
+) -> None:
+    text = (
+        f"V1 was southbound on a {south}-lane, undivided roadway. V2 was northbound on a {north}-lane, undivided "
+        "roadway. V3 was eastbound on a two-lane, undivided roadway. They entered the intersection and V1 struck V2."
+    )
+    legs = _legs(text)
+    assert {name: legs[name].lanes_in + legs[name].lanes_out for name in counts} == counts
+
+
+def test_one_total_holds_for_both_legs() -> None:
+    legs = _legs(AT + "V1 was southbound on a four-lane, undivided road. V2 was westbound. V1 struck V2.")
+    assert {legs[name].lanes_in + legs[name].lanes_out for name in ("N", "S")} == {4}
