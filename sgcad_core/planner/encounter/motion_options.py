@@ -59,10 +59,8 @@ _UNBRAKED = 0.3
 """Cost of a contact before the stated braking is visible."""
 _UNDER_WAY_M = 2.5
 """Distance after a standing start from which the vehicle counts as moving."""
-
-_SLOWS_M, _RIGHT_BEFORE_M = (3.0, 15.0), 12.0
-"""Distance before its place at which a vehicle begins to slow; before one right before a junction, where it is slow
-then."""
+_SLOWS_M, _RIGHT_BEFORE_M, _CRAWLS_MPS = (3.0, 15.0), 12.0, 1.5
+"""Distance before its place at which a vehicle is slow; before one right before a junction; and how slow at least."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -286,12 +284,14 @@ def _pace(role: Role, option: Option) -> Pace:
     curve = max(usual * pacing.factor, speed if told else 3.0)
     hard = told or bool(option.drift.note or option.twist.note or option.dodge or option.drift.earlier)
     pace = Pace(speed, curve, starts_at_m(role, pacing), grip_mps2=role.grip_mps2, hard=hard)
-    slowed = 0.35 * speed if role.actor.maneuver == "slowing" else BRAKED_TO * speed
-    if role.actor.maneuver == "slowing" or role.told.brakes:
-        before_m = _SLOWS_M[_before_junction(role)] if role.actor.maneuver == "slowing" else role.size[0] / 2 + 1.0
-        at = role.place.station_m - before_m
-        return replace(pace, slow_at_m=at, slow_mps=max(slowed, 1.5), brakes=role.told.brakes)
-    return pace
+    slows = role.actor.maneuver == "slowing"
+    if not (slows or role.told.brakes):
+        return pace
+    slowed = (0.35 if slows else BRAKED_TO) * speed
+    at = role.place.station_m - (_SLOWS_M[_before_junction(role)] if slows else role.size[0] / 2 + 1.0)
+    if slows and slowed < _CRAWLS_MPS and role.side == "back":  # it slows to that speed, from that of the one behind
+        slowed, pace = speed, replace(pace, cruise_mps=max(speed, min(usual_speed(role), role.other_mps)))
+    return replace(pace, slow_at_m=at, slow_mps=max(slowed, min(speed, _CRAWLS_MPS)), brakes=role.told.brakes)
 
 
 def _before_junction(role: Role) -> bool:
