@@ -53,14 +53,12 @@ _SWING_ASIDE_M = 5.0
 """Lateral room for steering aside; beyond it the speed is reduced."""
 _MEETS_S, _PLAIN = np.linspace(-2.5, 2.5, 11), 4
 """Own times at which nearly all encounters are, and the number of the most ordinary options."""
-_LEAST_SWING = 1.2
-"""Radius when steering aside, over the tightest of the vehicle."""
-_UNBRAKED = 0.3
-"""Cost of a contact before the stated braking is visible."""
-_UNDER_WAY_M = 2.5
-"""Distance after a standing start from which the vehicle counts as moving."""
-_SLOWS_M, _RIGHT_BEFORE_M, _CRAWLS_MPS = (3.0, 15.0), 12.0, 1.5
-"""Distance before its place at which a vehicle is slow; before one right before a junction; and how slow at least."""
+_LEAST_SWING, _UNBRAKED, _UNDER_WAY_M = 1.2, 0.3, 2.5
+"""Radius when steering aside, over the tightest of the vehicle; cost of a contact before the stated braking is visible;
+distance after a standing start from which the vehicle counts as moving."""
+_SLOWS_M, _RIGHT_BEFORE_M, _CRAWLS_MPS, _SLOW_S = (3.0, 15.0), 12.0, 1.5, 2.0
+"""Distance before its place at which a vehicle is slow; before one right before a junction; how slow at least, and the
+time for which a slower one is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -288,9 +286,11 @@ def _pace(role: Role, option: Option) -> Pace:
     if not (slows or role.told.brakes):
         return pace
     slowed = (0.35 if slows else BRAKED_TO) * speed
-    at = role.place.station_m - (_SLOWS_M[_before_junction(role)] if slows else role.size[0] / 2 + 1.0)
+    before_m = _SLOWS_M[_before_junction(role)] if slows else role.size[0] / 2 + 1.0
     if slows and slowed < _CRAWLS_MPS and role.side == "back":  # it slows to that speed, from that of the one behind
         slowed, pace = speed, replace(pace, cruise_mps=max(speed, min(usual_speed(role), role.other_mps)))
+        before_m = min(before_m, _SLOW_S * speed)
+    at = role.place.station_m - before_m
     return replace(pace, slow_at_m=at, slow_mps=max(slowed, min(speed, _CRAWLS_MPS)), brakes=role.told.brakes)
 
 

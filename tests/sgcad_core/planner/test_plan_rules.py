@@ -360,7 +360,7 @@ def test_a_parked_car_is_struck_where_it_is_parked() -> None:
 @pytest.mark.parametrize("mph", [5, 7, 12, 40])
 def test_one_that_slows_is_seen_to_slow_however_slow_the_one_behind_it_is(mph: int) -> None:
     ahead, behind = actor("V1", "slowing", "S", "N"), actor("V2", "straight", "S", "N", speed_mph=mph)
-    behavior, made = planned("four_leg", ahead, behind, contacts=("V2 front V1 back",))
+    _, made = planned("four_leg", ahead, behind, contacts=("V2 front V1 back",))
     assert made.realised
     gaps = box_gaps(track(made, "V1").pose, size_m(ahead), track(made, "V2").pose, size_m(behind))
     met = int(np.flatnonzero(gaps <= 0)[0])
