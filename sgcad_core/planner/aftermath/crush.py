@@ -1,8 +1,8 @@
 """How a vehicle crushes at a narrow thing that stays: it slows over a distance, not at once, and rolls back off it.
 
 The deceleration is even over the pulse of a crash into a pole (0.1 s at most, so that 15 m/s take 0.7 m); meanwhile the
-boxes overlap by the depth of the crush. Then the vehicle rebounds with a share of the speed. Knows two bodies and the
-clock. SI units.
+boxes overlap by the depth of the crush. Then the vehicle rebounds with a share of the speed, and the boxes, which do
+not crush, are moved apart as fast. Knows two bodies and the clock. SI units.
 """
 
 from __future__ import annotations
@@ -21,6 +21,8 @@ _PULSE_S, DEEPEST_M = 0.1, 0.8
 """Duration of the pulse, and the most crush: a faster vehicle slows in less time."""
 _REBOUND = 0.12
 """Share of the speed with which a vehicle rolls back off a pole."""
+_PARTING_MPS, _OFF_IT_MPS = 0.3, 1.2
+"""Speed at which overlapping bodies are moved apart; those that crushed part as they rebound, not by creeping."""
 STEP_LONGEST_S = 0.005
 
 
@@ -56,6 +58,10 @@ class Crushes:
         """Whether two still crush."""
         pulse = self.pulses.get(key_of(a, b))
         return pulse is not None and now_s <= pulse.until_s
+
+    def parting_mps(self, a: Mover, b: Mover) -> float:
+        """The speed at which two bodies are moved apart that still overlap."""
+        return _OFF_IT_MPS if key_of(a, b) in self.pulses else _PARTING_MPS
 
     def squeeze(self, pairs: Iterable[Pair], now_s: float, step_s: float) -> None:
         """Slows the approach of those that crush over a step; they part with the rebound where it ends."""

@@ -51,8 +51,6 @@ _SHOWN_M = 0.008
 _SHORTEST_S, _LONGEST_S, _LEAST_LEFT_S, _SHORTEST_LEFT_S = 0.0005, 0.01, 0.1, 1e-3
 _NEAR_M = 0.15
 """Bodies further apart move in steps of the clock, as long as these cannot bring them together."""
-_PARTING_MPS = 0.3
-"""Speed at which overlapping bodies are moved apart."""
 _HELD_S = 0.11
 """A touch is kept for two samples, so that samples, and files with fewer vertices, show it."""
 _GIVES_S = 0.1
@@ -296,5 +294,5 @@ class Wreck:
         held = self.now - self.touches[key_of(a, b)] < for_s and seen.gap_m > -_DEEPEST_M
         if seen.gap_m >= APART_M or held:
             return False
-        shift(a, b, seen, min(APART_M - seen.gap_m, _PARTING_MPS * _LONGEST_S / 2))
+        shift(a, b, seen, min(APART_M - seen.gap_m, self.crushes.parting_mps(a, b) * _LONGEST_S / 2))
         return True

@@ -69,3 +69,12 @@ def test_walls_and_slow_touches_take_no_crush() -> None:
     assert -struck(15.0, 0.0, size=(0.5, 5.0))[1].min() < 0.06
     assert -struck(4.0, 0.0)[1].min() < 0.06
     assert -struck(15.0, 0.0, of=(1.8, 0.6))[1].min() < 0.06
+
+
+@pytest.mark.parametrize("speed", [8.0, 15.6, 25.0])
+@pytest.mark.parametrize("aside", [-0.6, 0.0, 0.4])
+def test_a_car_comes_off_the_pole_at_once_and_does_not_creep(speed: float, aside: float) -> None:
+    poses, gaps, _ = struck(speed, aside)
+    hit, moving = int(np.flatnonzero(gaps <= 0.0)[0]), np.flatnonzero(speeds(poses) > 0.02)
+    assert (moving[-1] - hit) * STEP_S < 1.5
+    assert gaps[-1] > 0.0
