@@ -65,6 +65,7 @@ def sources(folder: Path, attempt: str) -> set[str]:
 
 
 # ------------------------------------------------------------------ OmniTester
+@pytest.mark.slow
 def test_omnitester_writes_routes_that_sumos_drivers_crash_on(run):
     result, folder = run(OMNI, said.OMNI_GOOD)
     assert result["status"] == "generated", result["reason"]

@@ -37,6 +37,7 @@ def test_both_sides_of_the_split_have_clauses(options: Group) -> None:
     assert not set(train) & set(test)
 
 
+@pytest.mark.slow
 def test_texts_are_thousands_of_forms() -> None:
     shapes = {re.sub(r"\d+|[A-Z][\w-]*", "#", text_report(seed).narrative) for seed in range(1500)}
     assert len(shapes) > 1450

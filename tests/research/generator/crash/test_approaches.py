@@ -63,6 +63,7 @@ def test_the_same_intersection_is_one_that_was_named() -> None:
     assert seen > 30
 
 
+@pytest.mark.slow
 def test_who_came_up_the_leg_that_ends_came_from_where_that_lies(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(motion_clauses, "FROM_STEM", {"t": group("QQ {V}"), "driveway": group("QQ {V}")})
     monkeypatch.setattr(approaches, "UNSAID", 1.0)
