@@ -159,6 +159,7 @@ def test_of_many_that_want_a_key_one_has_it(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_who_is_killed_holds_nobody_up(tmp_path):
     code = f"""
 import time

@@ -127,8 +127,7 @@ def test_a_batch_of_reports_equals_two_forwards_without_cache(name: str, alpha: 
         assert (answer.without_context == []) == (alpha == 0.0)
 
 
-@pytest.mark.parametrize("name", ARCHITECTURES)
-@pytest.mark.parametrize("held", [False, True], ids=["free", "grammar"])
+@pytest.mark.parametrize(("name", "held"), spread(product(ARCHITECTURES, (False, True)), 3))
 def test_every_token_was_chosen_from_the_state_that_is_kept_of_it(name: str, held: bool) -> None:
     grammar = maker().grammar(tiny.SCHEMA) if held else None
     _, (first, *_), _ = run(name, 1, Cad(alpha=0.7), 60, grammar)
@@ -142,7 +141,7 @@ def test_every_token_was_chosen_from_the_state_that_is_kept_of_it(name: str, hel
     assert first.states == [], "not asked for"
 
 
-@pytest.mark.parametrize("name", ARCHITECTURES)
+@pytest.mark.parametrize("name", spread(ARCHITECTURES, 2))
 def test_with_a_grammar_and_jump_forward_tokens_and_logits_stay_the_same(name: str) -> None:
     decoder = Cad(alpha=0.7)
     grammar = maker().grammar(tiny.SCHEMA)

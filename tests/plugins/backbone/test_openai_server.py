@@ -119,6 +119,7 @@ def test_every_decoder_works_as_in_process(decoder: Decoder, url: str, folder: P
     assert_same(server.generate(report(2), question(), decoder), wanted)
 
 
+@pytest.mark.slow
 def test_a_sampled_answer_is_the_one_in_process_of_the_same_seed(url: str, folder: Path, inside: HfVision) -> None:
     server, decoder = through(url, folder, top_logprobs=WHOLE), Cad(alpha=0.7, temperature=0.9, top_p=0.8)
     for seed in (1, 2):
@@ -233,7 +234,8 @@ def test_the_check_of_a_config_whose_server_is_away_says_so(folder: Path) -> Non
 
 
 # ------------------------------------------------------------------ pictures
-@pytest.mark.parametrize("name", spread(["llava", "qwen2_5_vl"], 2))
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["llava", "qwen2_5_vl"])
 def test_tokens_behind_pictures_equal_those_in_process(name: str, tmp_path: Path) -> None:
     """Diagrams go out as data URLs; the contrast is with a row that sees neither narrative nor picture."""
     folder = save(name, tmp_path)

@@ -43,6 +43,7 @@ def test_texts_are_thousands_of_forms() -> None:
     assert len(shapes) > 1450
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("base", range(0, many(1, 8000), 4000))
 def test_who_is_told_to_be_behind_is_the_striker(base: int) -> None:
     told = 0

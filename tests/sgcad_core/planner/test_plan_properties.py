@@ -154,7 +154,7 @@ def test_drawn_crashes_keep_every_promise(seed):
     check_driven(behavior, made)
 
 
-@pytest.mark.parametrize("seed", spread(range(3000, 3060), 3))
+@pytest.mark.parametrize("seed", spread(range(3000, 3060), 5))
 def test_drawn_crashes_can_be_driven(seed):
     _, layout, behavior = draw_scene(seed)
     check_driven(behavior, plan(behavior, network(layout)))
@@ -187,7 +187,7 @@ def turned(track, k: int) -> float:
     return math.degrees(np.unwrap(track.heading_rad[: k + 1])[-1] - track.heading_rad[0])
 
 
-@pytest.mark.parametrize("seed", spread(range(200, 260), 3))
+@pytest.mark.parametrize("seed", spread(range(200, 260), 5))
 def test_maneuvers_show_before_contact(seed):
     """As an observer tells them: standing moves under 2 m, a turn turns over 12 degrees its way."""
     _, layout, behavior = draw_scene(seed)

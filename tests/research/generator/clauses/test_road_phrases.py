@@ -192,6 +192,7 @@ def _lies(bearing: int, axis: str) -> bool:
     }
 
 
+@pytest.mark.slow
 def test_a_limit_told_beside_a_heading_is_that_of_the_road_in_that_direction() -> None:
     crossing = 0
     for seed in range(1500):

@@ -52,6 +52,7 @@ def test_what_a_clause_has_a_place_for_is_told_where_words_stand_in_it(monkeypat
     assert plain > 20
 
 
+@pytest.mark.slow
 def test_the_same_intersection_is_one_that_was_named() -> None:
     seen = 0
     for seed in range(1500):
