@@ -17,11 +17,12 @@ def many(usual: int, thorough: int) -> int:
 def spread(cases: Iterable[Any], every: int) -> list[Any]:
     """Parameters of a test: the first case and each `every`-th after it stay quick, the others are slow.
 
-    A case that is a tuple holds the values of several arguments.
+    A case that is a tuple holds the values of several arguments. Raises TypeError for a case with marks of its own.
     """
-    return [
-        case
-        if number % every == 0
-        else pytest.param(*(case if type(case) is tuple else (case,)), marks=pytest.mark.slow)
-        for number, case in enumerate(cases)
-    ]
+    return [case if number % every == 0 else _slow(case) for number, case in enumerate(cases)]
+
+
+def _slow(case: Any) -> Any:
+    if hasattr(case, "marks"):
+        raise TypeError(f"{case} has marks of its own: give the bare values")
+    return pytest.param(*(case if type(case) is tuple else (case,)), marks=pytest.mark.slow)

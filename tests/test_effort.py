@@ -21,3 +21,8 @@ def test_the_first_case_and_each_nth_after_it_are_quick_and_the_others_slow():
 
 def test_a_case_of_several_arguments_keeps_them():
     assert parts(spread([("a", 1), ("b", 2)], 2)) == ([("a", 1)], [("b", 2)])
+
+
+def test_a_case_that_is_marked_already_is_refused():
+    with pytest.raises(TypeError, match="marks of its own: give the bare values"):
+        spread([1, pytest.param(2)], 2)

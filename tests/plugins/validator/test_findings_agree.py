@@ -18,7 +18,6 @@ from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.reading.text.privacy import redact
 from sgcad_core.records.specs import BehaviorSpec, Contact, RoadSpec
-from tests.effort import spread
 
 QUICK = ("left_across_signal", "head_on_centerline", "rear_end_stopped", "near_braking", "pedestrian_midblock")
 MANEUVERS = ("straight", "stopped", "turn_left", "turn_right", "lane_change_left", "crossing_centerline", "backing")
@@ -87,7 +86,7 @@ def test_findings_about_a_behavior_never_exclude_each_other(name):
     assert [(a.line(), b.line()) for a, b in combinations(found.values(), 2) if exclude(a, b)] == []
 
 
-@pytest.mark.parametrize("name", spread(NAMES, 2))
+@pytest.mark.parametrize("name", NAMES)
 def test_findings_about_roads_never_exclude_each_other(name):
     report, network, _ = right(name)
     assert isinstance(network, RoadNetwork)
