@@ -7,7 +7,6 @@ import subprocess
 import sys
 import tomllib
 from collections import Counter
-from functools import cache
 from importlib.metadata import entry_points
 from pathlib import Path
 from statistics import median, quantiles
@@ -18,6 +17,7 @@ from flows.study import plan
 from flows.study_file import spec
 from sgcad_core import config, registry, settings
 from sgcad_core.interfaces import Plugin
+from tests.sources import tree
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = sorted(p for d in ("sgcad_core", "plugins", "flows", "research") for p in (ROOT / d).rglob("*.py"))
@@ -25,12 +25,6 @@ STUDIES = sorted((ROOT / "configs" / "studies").glob("*.yaml"))
 CONFIGS = sorted(set((ROOT / "configs").rglob("*.yaml")) - set(STUDIES))
 MOST_MODULES = 15
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-
-
-@cache
-def _tree(file):
-    """A module's syntax tree, which several tests walk."""
-    return ast.parse(file.read_text())
 
 
 @pytest.mark.parametrize("kind", registry.BASES)
@@ -90,7 +84,7 @@ def test_imports_keep_their_order():
 )
 def test_a_package_imports_no_stranger(package, strangers):
     for file in (ROOT / package).rglob("*.py"):
-        for node in ast.walk(_tree(file)):
+        for node in ast.walk(tree(file)):
             names = (
                 [a.name for a in node.names] if isinstance(node, ast.Import)
                 else [node.module or ""] if isinstance(node, ast.ImportFrom) else []
@@ -101,7 +95,7 @@ def test_a_package_imports_no_stranger(package, strangers):
 @pytest.mark.parametrize("file", SOURCES, ids=lambda f: str(f.relative_to(ROOT)))
 def test_a_file_is_short_and_says_what_it_is(file):
     assert len(file.read_text().splitlines()) <= 300
-    assert ast.get_docstring(_tree(file))
+    assert ast.get_docstring(tree(file))
 
 
 def test_docstrings_speak_of_things_not_of_whoever():
@@ -111,7 +105,7 @@ def test_docstrings_speak_of_things_not_of_whoever():
     found = [
         f"{file.relative_to(ROOT)}: {getattr(node, 'name', 'module')}"
         for file in files
-        for node in ast.walk(_tree(file))
+        for node in ast.walk(tree(file))
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)
         and pronoun.search(ast.get_docstring(node) or "")
     ]
@@ -120,7 +114,7 @@ def test_docstrings_speak_of_things_not_of_whoever():
 
 def test_functions_are_short():
     lengths = [
-        n.end_lineno - n.lineno + 1 for file in SOURCES for n in ast.walk(_tree(file)) if isinstance(n, ast.FunctionDef)
+        n.end_lineno - n.lineno + 1 for file in SOURCES for n in ast.walk(tree(file)) if isinstance(n, ast.FunctionDef)
     ]
     assert median(lengths) <= 10
     assert quantiles(lengths, n=10)[-1] <= 30
@@ -144,7 +138,7 @@ def test_no_modules_import_each_other():
 def _imported(file, modules):
     """Names of the project's modules that a file imports anywhere in it, also inside functions."""
     found = set()
-    for node in ast.walk(_tree(file)):
+    for node in ast.walk(tree(file)):
         if isinstance(node, ast.ImportFrom) and node.module:
             names = (f"{node.module}.{alias.name}" for alias in node.names)
             found |= {name if name in modules else node.module for name in names}

@@ -2,12 +2,12 @@
 
 import ast
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 
 import pytest
 
 from sgcad_core.kinds import ACTORS, JUNCTIONS
+from tests.sources import tree
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("sgcad_core", "plugins", "flows", "deploy", "research")
@@ -37,10 +37,10 @@ def _texts(nodes: list[ast.expr | None]) -> Iterator[str]:
             yield from _texts(list(node.elts))
 
 
-def tables(tree: ast.AST, ids: set[str]) -> list[int]:
+def tables(module: ast.AST, ids: set[str]) -> list[int]:
     """Lines of literals that hold many kinds: dicts by key or by value, tuples, lists, sets, chains of comparisons."""
     found = []
-    for node in ast.walk(tree):
+    for node in ast.walk(module):
         parts: list[list[ast.expr | None]] = []
         if isinstance(node, (ast.Tuple, ast.List, ast.Set)):
             parts = [list(node.elts)]
@@ -53,22 +53,20 @@ def tables(tree: ast.AST, ids: set[str]) -> list[int]:
     return found
 
 
-@cache
 def _trees() -> dict[str, ast.Module]:
     """The parsed modules by path."""
     files = [f for folder in FOLDERS for f in sorted((ROOT / folder).rglob("*.py")) if HOME not in f.parents]
-    return {str(f.relative_to(ROOT)): ast.parse(f.read_text(encoding="utf-8")) for f in files}
+    return {str(f.relative_to(ROOT)): tree(f) for f in files}
 
 
 @pytest.mark.parametrize("ids", IDS, ids=["actors", "junctions"])
 def test_no_other_module_has_a_table_of_kinds(ids: set[str]) -> None:
-    found = [f"{name}:{line}" for name, tree in _trees().items() if name not in ALLOWED for line in tables(tree, ids)]
+    found = [f"{name}:{line}" for name, read in _trees().items() if name not in ALLOWED for line in tables(read, ids)]
     assert found == [], "ask the record of the kind, or add a field to it (sgcad_core/kinds)"
 
 
 def test_no_file_is_allowed_a_table_that_has_none() -> None:
-    trees = {name: ast.parse((ROOT / name).read_text(encoding="utf-8")) for name in ALLOWED}
-    assert [name for name, tree in trees.items() if not any(tables(tree, ids) for ids in IDS)] == []
+    assert [name for name in ALLOWED if not any(tables(tree(ROOT / name), ids) for ids in IDS)] == []
 
 
 @pytest.mark.parametrize("line", [

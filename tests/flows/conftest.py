@@ -1,12 +1,15 @@
-"""A stranger's distribution of small plugins, installed while flow tests run, and reports for them."""
+"""A stranger's distribution of small plugins, installed while flow tests run, reports for them, and the command."""
 
 import os
+import signal
+import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 import yaml
 
+from flows import cli, command_end
 from sgcad_core import entry_points, registry
 
 DISTRIBUTION = Path(__file__).parent / "testkit_dist"
@@ -59,6 +62,26 @@ def reports(tmp_path):
         return folder
 
     return write
+
+
+@pytest.fixture
+def here(monkeypatch, capsys):
+    """The command in this process, for what ends before anything starts: a process of its own takes a second."""
+
+    def leave(code):
+        raise SystemExit(code)
+
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["sgcad", *map(str, arguments)])
+        monkeypatch.setattr(command_end, "leave", leave)
+        monkeypatch.setattr(cli, "leave", leave)
+        heeded = signal.getsignal(signal.SIGINT)
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        signal.signal(signal.SIGINT, heeded)
+        return subprocess.CompletedProcess(arguments, ended.value.code or 0, *capsys.readouterr())
+
+    return run
 
 
 @pytest.fixture(scope="session")

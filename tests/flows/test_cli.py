@@ -12,8 +12,6 @@ import httpx
 import psutil
 import pytest
 
-from flows import cli, command_end
-
 CODE = (
     "from flows import cli; from flows.case_files import find_cases; "
     "find_cases._code_digest = lambda: 'as it is'; cli.main()"
@@ -26,26 +24,6 @@ def sgcad(*arguments, **environment):
     """Run a command; its exit code, stdout and stderr."""
     command = [*SGCAD, *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, env=os.environ | environment, timeout=300)
-
-
-@pytest.fixture
-def here(monkeypatch, capsys):
-    """The command in this process, for what ends before anything starts: a process of its own takes a second."""
-
-    def leave(code):
-        raise SystemExit(code)
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["sgcad", *map(str, arguments)])
-        monkeypatch.setattr(command_end, "leave", leave)
-        monkeypatch.setattr(cli, "leave", leave)
-        heeded = signal.getsignal(signal.SIGINT)
-        with pytest.raises(SystemExit) as ended:
-            cli.main()
-        signal.signal(signal.SIGINT, heeded)
-        return subprocess.CompletedProcess(arguments, ended.value.code or 0, *capsys.readouterr())
-
-    return run
 
 
 def statuses(out, config="kit"):
@@ -116,6 +94,7 @@ def test_the_version_is_told(here):
     assert (ended.returncode, ended.stdout) == (0, f"sgcad {version('sg-cadvlm')}\n")
 
 
+@pytest.mark.slow
 def test_a_model_that_this_machine_cannot_hold_is_told_before_anything_starts():
     ended = sgcad("check", "qwen2_5_vl_72b", "--set", "backbone.model=nobody/Huge-9000B")
     assert ended.returncode == 0
@@ -143,6 +122,7 @@ def test_an_interpreter_that_cannot_be_started_is_named(monkeypatch):
         Worker("plugins.simulator._sumo_worker:replay").call("x", timeout_s=1)
 
 
+@pytest.mark.slow
 def test_doctor_looks_no_further_where_it_cannot_write(tmp_path):
     ended = sgcad("doctor", "--out", "/proc/runs", PREFECT_HOME="/proc/prefect")
     assert ended.returncode == 1

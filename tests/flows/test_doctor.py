@@ -44,6 +44,7 @@ def test_no_server_and_no_database_is_made(tmp_path):
     assert not list(tmp_path.glob("prefect.db*"))
 
 
+@pytest.mark.slow
 def test_runs_of_killed_batches_are_told_from_the_database(tmp_path):
     new = time.strftime("%Y-%m-%d %H:%M:%S.000000", time.gmtime(time.time() - 60))
     old = "2020-01-01 00:00:00.000000"
@@ -53,12 +54,14 @@ def test_runs_of_killed_batches_are_told_from_the_database(tmp_path):
     assert "; 1 runs of killed batches still say RUNNING, remove them: prefect flow-run delete a ..." in said
 
 
+@pytest.mark.slow
 def test_a_file_that_is_no_database_of_prefects_is_named(tmp_path):
     (tmp_path / "prefect.db").write_text("no database " * 100)
     said = apart("flow", tmp_path, PREFECT_HOME=str(tmp_path))
     assert said.startswith(f"wrong {tmp_path}/prefect.db: Prefect's database cannot be used (file is not a database)")
 
 
+@pytest.mark.slow
 def test_a_file_that_is_no_database_of_mlflows_is_named(tmp_path):
     (tmp_path / "mlflow.db").write_text("no database " * 100)
     assert apart("tracking", tmp_path).startswith(f"wrong {tmp_path}/mlflow.db: this is no database of MLflow's")

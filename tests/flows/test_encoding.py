@@ -6,9 +6,9 @@ from tests.flows.test_cli import sgcad
 
 
 @pytest.mark.parametrize("command", ["run", "evaluate"])
-def test_an_unknown_encoding_is_refused(reports, tmp_path, command):
+def test_an_unknown_encoding_is_refused(here, reports, tmp_path, command):
     place = reports(a="") if command == "evaluate" else reports(a="") / "a"
-    ended = sgcad(command, place, "--config", "template.yaml", "--encoding", "evnts", "--out", tmp_path / "out")
+    ended = here(command, place, "--config", "template.yaml", "--encoding", "evnts", "--out", tmp_path / "out")
     assert ended.returncode == 2
     assert "encoding" in ended.stderr
     assert "'timed' or 'events'" in ended.stderr

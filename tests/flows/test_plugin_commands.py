@@ -6,6 +6,8 @@ import sys
 
 import pytest
 
+from tests.effort import spread
+
 HEAVY = ("torch", "transformers", "mlflow", "prefect", "lancedb", "scipy", "scenariogeneration", "libsumo")
 PLUGINS = ("plugins", "numpy", "sgcad_core.interfaces")
 WATCHED = """
@@ -29,7 +31,7 @@ def test_help_and_list_import_no_plugin(words):
     assert imported(*words, modules=HEAVY + PLUGINS) == "IMPORTED []"
 
 
-@pytest.mark.parametrize("config", ["template", "fused", "mini"])
+@pytest.mark.parametrize("config", spread(["fused", "template", "mini"], 3))
 def test_a_check_imports_nothing_heavy(config):
     assert imported("check", config) == "IMPORTED []"
 

@@ -18,6 +18,7 @@ from sgcad_core import settings
 from sgcad_core.config import build
 from sgcad_core.errors import ConfigError, MissingTool
 from tests import transcripts_rivals as said
+from tests.effort import spread
 from tests.plugins.backbone.test_openai_chat import Server, chat
 
 NARRATIVE = "Vehicle 1 stood northbound before a T-intersection. Vehicle 2 struck its back with its front."
@@ -65,6 +66,7 @@ def sources(folder: Path, attempt: str) -> set[str]:
 
 
 # ------------------------------------------------------------------ OmniTester
+@pytest.mark.slow
 def test_omnitester_writes_routes_that_sumos_drivers_crash_on(run):
     result, folder = run(OMNI, said.OMNI_GOOD)
     assert result["status"] == "generated", result["reason"]
@@ -188,7 +190,7 @@ RIVALS = [
 ]
 
 
-@pytest.mark.parametrize("name", RIVALS)
+@pytest.mark.parametrize("name", spread(RIVALS, 3))
 def test_every_rivals_config_runs_with_a_script_in_the_models_place(run, name, tmp_path):
     config = load_config(name)
     raw = config.raw

@@ -18,6 +18,7 @@ from flows.study_file.spec import load_study
 from sgcad_core import settings
 from sgcad_core.config import build
 from tests import transcripts
+from tests.effort import spread
 from tests.plugins.backbone.test_openai_chat import Server, chat
 
 NARRATIVE = "Vehicle 1 stood northbound before a T-intersection. Vehicle 2 struck its back with its front."
@@ -130,7 +131,7 @@ STUDIES = ("components_qwen72b", "components_llama90b", "rag_qwen72b", "rag_llam
 PAPER = [f"{study.name}/{arm.name}" for study in map(load_study, STUDIES) for arm in study.arms]
 
 
-@pytest.mark.parametrize("name", PAPER)
+@pytest.mark.parametrize("name", spread(PAPER, 3))
 def test_every_arm_of_the_paper_runs_with_a_script_in_the_models_place(run, name):
     raw = load_config(name).raw
     assert raw["road_writer"]["name"] == "plain_xml"

@@ -6,6 +6,7 @@ import sys
 import tomllib
 
 from tests.packaging.conftest import ROOT
+from tests.sources import tree
 
 PRODUCT = ("sgcad_core", "plugins", "flows", "deploy")
 OWN = {"research", *PRODUCT}
@@ -23,7 +24,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 def imported(folder):
     """(file, first part of a module) of every import, those within functions included."""
     for file in sorted((ROOT / folder).rglob("*.py")):
-        for node in ast.walk(ast.parse(file.read_text())):
+        for node in ast.walk(tree(file)):
             if isinstance(node, ast.Import):
                 yield from ((file, alias.name.split(".")[0]) for alias in node.names)
             elif isinstance(node, ast.ImportFrom) and node.module and not node.level:

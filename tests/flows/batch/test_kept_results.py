@@ -62,6 +62,7 @@ def test_fewer_attempts_are_the_first_of_many(work, config_file):
     assert len([n for n in asked_alone if n.startswith("road")]) == 9
 
 
+@pytest.mark.slow
 def test_longer_refinement_first_serves_the_shorter_ones(work, config_file):
     arms = [config_file(f"max{n}", **ASKING, max_attempts=n) for n in (10, 2)]
     shared, asked = work(*arms)
@@ -158,6 +159,7 @@ def test_of_many_that_want_a_key_one_has_it(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_who_is_killed_holds_nobody_up(tmp_path):
     code = f"""
 import time

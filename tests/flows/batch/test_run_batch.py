@@ -31,6 +31,7 @@ def test_a_case_that_kills_its_process_fails_alone(batch):
     assert "the process that ran it died, twice" in endings["b"].result["reason"]
 
 
+@pytest.mark.slow
 def test_a_process_killed_from_outside_costs_no_case(batch, tmp_path):
     endings = work(batch(a=f"DIE ONCE {tmp_path / 'killed'}", b=""))
     assert (tmp_path / "killed").exists()
@@ -69,6 +70,7 @@ def test_a_single_case_runs_in_this_process_and_tells_its_steps(batch):
     assert steps[:3] == [("kit/a", "read"), ("kit/a", "retrieve[road]"), ("kit/a", "road[1]")]
 
 
+@pytest.mark.slow
 def test_a_missing_tool_ends_the_batch_with_its_remedy(batch):
     with pytest.raises(MissingTool, match="netconvert is not installed"):
         work(batch(a="TOOLLESS", b=""))

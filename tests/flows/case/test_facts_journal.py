@@ -11,6 +11,7 @@ import pytest
 from flows.case.facts_journal import both_or_neither, journal_of, settle, settled
 from sgcad_core.revision.file import facts_lock
 from sgcad_core.system.report_files import files_below
+from tests.effort import spread
 
 DYING = """
 import os, signal, sys
@@ -46,8 +47,14 @@ def die(place, when):
     assert subprocess.run(command).returncode == (-signal.SIGKILL if when else 0)
 
 
-@pytest.mark.parametrize("before", ["old facts", None])
-@pytest.mark.parametrize(("when", "kept"), [("between", False), ("behind", True), ("", True)])
+ENDS = [
+    (when, kept, before)
+    for when, kept in (("between", False), ("behind", True), ("", True))
+    for before in (None, "old facts")
+]
+
+
+@pytest.mark.parametrize(("when", "kept", "before"), spread(ENDS, 3))
 def test_a_killed_writer_leaves_both_or_neither(place, when, kept, before):
     if before:
         facts_of(place).write_text(before)

@@ -120,6 +120,7 @@ def test_an_edit_removes_what_a_killed_one_left_in_the_temporary_folder(case, tm
     assert not left.exists()
 
 
+@pytest.mark.slow
 def test_any_edits_undone_give_the_first_result_byte_for_byte(case):
     first = left(case)
     revise_case.revise(case, {"roads.N.lanes_forward": 2})

@@ -1,15 +1,6 @@
 """`sgcad revise` and `sgcad desk export` as they are typed: exit codes, one message, help."""
 
-import subprocess
-import sys
-
 import pytest
-
-COMMAND = [sys.executable, "-c", "from flows.cli import main; main()"]
-
-
-def sgcad(*words):
-    return subprocess.run([*COMMAND, *map(str, words)], capture_output=True, text=True, check=False)
 
 
 @pytest.mark.parametrize(
@@ -26,17 +17,17 @@ def sgcad(*words):
         (["desk", "export", "nowhere", "--out", "x"], "give the folder of one config"),
     ],
 )
-def test_what_cannot_be_done_is_one_message_and_exit_code_2(words, said):
-    done = sgcad(*words)
+def test_what_cannot_be_done_is_one_message_and_exit_code_2(here, words, said):
+    done = here(*words)
     assert done.returncode == 2
     assert said in done.stderr
     assert done.stderr.startswith("sgcad: error: ")
     assert done.stdout == ""
 
 
-def test_facts_kept_for_later_lie_beside_the_report(tmp_path):
+def test_facts_kept_for_later_lie_beside_the_report(here, tmp_path):
     (tmp_path / "report.txt").write_text("V1 struck V2 from behind on a road, as the officer who came by said.")
-    done = sgcad("revise", tmp_path, "--later", "--set", "V1.maneuver=turn_left", "--why", "he said so", "--who", "ann")
+    done = here("revise", tmp_path, "--later", "--set", "V1.maneuver=turn_left", "--why", "he said so", "--who", "ann")
     assert (done.returncode, done.stdout) == (0, f"kept for the next run: 1 facts of {tmp_path.name}\n")
     kept = (tmp_path / "facts.yaml").read_text()
     assert "field: vehicles.V1.maneuver" in kept

@@ -154,6 +154,7 @@ def desk_says(*words):
     return said.returncode, said.stderr
 
 
+@pytest.mark.slow
 def test_a_wrong_folder_a_case_and_a_taken_port_are_told_with_their_remedy(folder):
     code, said = desk_says(folder / "none")
     assert (code, "no such folder; make results first" in said) == (2, True)

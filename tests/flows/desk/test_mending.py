@@ -190,6 +190,7 @@ def test_only_an_idle_worker_is_warmed(config):
     mender.close()
 
 
+@pytest.mark.slow
 def test_an_edit_whose_client_has_gone_changes_nothing(page, key, config):
     """A client that ends its connection at once, on a server of its own."""
     mine, before = page(key), version_of(config / CASE)

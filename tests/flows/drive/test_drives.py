@@ -194,6 +194,7 @@ def test_what_a_drive_took_is_told(case):
     assert all(0 < t["seconds"] < math.inf for t in told)
 
 
+@pytest.mark.slow
 def test_cases_may_be_driven_side_by_side_with_the_same_results(tmp_path):
     for k in range(3):
         written(tmp_path / "runs" / f"case-{k}", crossing(own=8.0 + 4 * k))

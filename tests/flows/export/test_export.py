@@ -140,6 +140,7 @@ def test_scenarionet_record_has_every_actor_the_map_and_the_ego(made):
     assert any(feature["type"].startswith("LANE") for feature in record["map_features"].values())
 
 
+@pytest.mark.slow
 def test_film_shows_the_whole_time_with_the_report_and_the_verdict(made, tmp_path):
     (file,) = list(film(made, tmp_path, ["gif"], 10))
     shots = Image.open(file)

@@ -103,6 +103,7 @@ def test_a_killed_study_goes_on_where_it_stopped_and_no_number_changes(study, tm
     assert not list(folder.glob("**/.partial-*"))
 
 
+@pytest.mark.slow
 def test_what_arms_share_is_computed_once(under_server, tmp_path, config_file, reports):
     config_file()
     file = tmp_path / "kits.yaml"

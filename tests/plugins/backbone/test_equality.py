@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from plugins.backbone.engine.records import Answer, Prompt, Request
 from plugins.decoder.cad import Cad
 from plugins.decoder.greedy import Greedy
 from sgcad_core.interfaces import Decoder
+from tests.effort import spread
 from tests.plugins.backbone import tiny
 
 EOS = frozenset({2})
@@ -114,8 +116,7 @@ def worst(recorder: Recorder, answer: Answer, seen: Any) -> float:
     return max(faults)
 
 
-@pytest.mark.parametrize("name", ARCHITECTURES)
-@pytest.mark.parametrize("alpha", [0.0, 0.3, 0.7, 2.0])
+@pytest.mark.parametrize(("name", "alpha"), spread(product(ARCHITECTURES, (0.0, 0.3, 0.7, 2.0)), 3))
 def test_a_batch_of_reports_equals_two_forwards_without_cache(name: str, alpha: float) -> None:
     decoder = Cad(alpha=alpha)
     reports, answers, recorders = run(name, 4, decoder, 10)
@@ -126,8 +127,7 @@ def test_a_batch_of_reports_equals_two_forwards_without_cache(name: str, alpha: 
         assert (answer.without_context == []) == (alpha == 0.0)
 
 
-@pytest.mark.parametrize("name", ARCHITECTURES)
-@pytest.mark.parametrize("held", [False, True], ids=["free", "grammar"])
+@pytest.mark.parametrize(("name", "held"), spread(product(ARCHITECTURES, (False, True)), 3))
 def test_every_token_was_chosen_from_the_state_that_is_kept_of_it(name: str, held: bool) -> None:
     grammar = maker().grammar(tiny.SCHEMA) if held else None
     _, (first, *_), _ = run(name, 1, Cad(alpha=0.7), 60, grammar)
@@ -141,7 +141,7 @@ def test_every_token_was_chosen_from_the_state_that_is_kept_of_it(name: str, hel
     assert first.states == [], "not asked for"
 
 
-@pytest.mark.parametrize("name", ARCHITECTURES)
+@pytest.mark.parametrize("name", spread(ARCHITECTURES, 2))
 def test_with_a_grammar_and_jump_forward_tokens_and_logits_stay_the_same(name: str) -> None:
     decoder = Cad(alpha=0.7)
     grammar = maker().grammar(tiny.SCHEMA)
@@ -157,7 +157,7 @@ def test_with_a_grammar_and_jump_forward_tokens_and_logits_stay_the_same(name: s
             np.testing.assert_allclose(logps, expected, atol=LIMIT)
 
 
-@pytest.mark.parametrize("count", range(1, 9))
+@pytest.mark.parametrize("count", spread(range(1, 9), 3))
 def test_any_number_of_reports_gives_each_its_own_answer(count: int) -> None:
     decoder = Cad(alpha=0.7)
     reports, answers, recorders = run("qwen2_5_vl", count, decoder, 6)

@@ -345,6 +345,7 @@ def test_native_is_the_dtype_that_the_device_multiplies_in(
     assert f"computed in {str(dtype).removeprefix('torch.')}" in found.notes
 
 
+@pytest.mark.slow
 def test_backbones_of_one_model_share_it_and_the_last_one_frees_it(tmp_path: Path) -> None:
     folder = str(folders.save("qwen2_5_vl", tmp_path))
     first, second = (HfVision(model=folder, device="cpu", dtype="float32", max_new_tokens=n) for n in (200, 150))

@@ -233,6 +233,7 @@ def test_a_dead_end_names_the_field() -> None:
     assert caught.value.path == "lanes"
 
 
+@pytest.mark.slow
 def test_an_interpreter_that_ends_has_ended_the_loop_first() -> None:
     told = """
 import atexit

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,7 @@ from research.benchmarks.decoding.served_model import ServedModel
 from sgcad_core.case.records import Context, Generation, Query
 from sgcad_core.errors import BadInput, ConfigError, InvalidOutput, MissingTool
 from sgcad_core.interfaces import Decoder
+from tests.effort import spread
 from tests.plugins.backbone import tiny
 from tests.plugins.backbone.folders import context, save
 
@@ -90,15 +92,17 @@ def assert_same(found: Generation, wanted: Generation) -> None:
     assert found.grounding == pytest.approx(wanted.grounding, abs=1e-2)
 
 
-@pytest.mark.parametrize("protocol", ["vllm", "sglang", "llama_cpp"])
+ASKED = [
+    (Cad(alpha=0.3), True, WHOLE),
+    (Cad(alpha=1.5), False, WHOLE),
+    (Cad(alpha=0.7, beta=0.1), True, 20),
+    (Cad(alpha=0.7), False, 40),
+]
+
+
 @pytest.mark.parametrize(
-    ("decoder", "schema", "top"),
-    [
-        (Cad(alpha=0.3), True, WHOLE),
-        (Cad(alpha=1.5), False, WHOLE),
-        (Cad(alpha=0.7, beta=0.1), True, 20),
-        (Cad(alpha=0.7), False, 40),
-    ],
+    ("protocol", "decoder", "schema", "top"),
+    spread([(protocol, *asked) for protocol, asked in product(("vllm", "sglang", "llama_cpp"), ASKED)], 5),
 )
 def test_tokens_equal_those_in_process(
     protocol: str, decoder: Decoder, schema: bool, top: int, url: str, folder: Path, inside: HfVision
@@ -115,6 +119,7 @@ def test_every_decoder_works_as_in_process(decoder: Decoder, url: str, folder: P
     assert_same(server.generate(report(2), question(), decoder), wanted)
 
 
+@pytest.mark.slow
 def test_a_sampled_answer_is_the_one_in_process_of_the_same_seed(url: str, folder: Path, inside: HfVision) -> None:
     server, decoder = through(url, folder, top_logprobs=WHOLE), Cad(alpha=0.7, temperature=0.9, top_p=0.8)
     for seed in (1, 2):
@@ -229,7 +234,8 @@ def test_the_check_of_a_config_whose_server_is_away_says_so(folder: Path) -> Non
 
 
 # ------------------------------------------------------------------ pictures
-@pytest.mark.parametrize("name", ["qwen2_5_vl", "llava"])
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["llava", "qwen2_5_vl"])
 def test_tokens_behind_pictures_equal_those_in_process(name: str, tmp_path: Path) -> None:
     """Diagrams go out as data URLs; the contrast is with a row that sees neither narrative nor picture."""
     folder = save(name, tmp_path)

@@ -22,6 +22,7 @@ from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
 from sgcad_core.roads.layout import road_spec
+from tests.effort import spread
 
 SNIPPETS = {chunk.id.removeprefix("snippet/"): chunk.text for chunk in snippet_chunks()}
 needs_minilm = pytest.mark.skipif(importlib.util.find_spec(MINILM_PACKAGE) is None, reason="needs the extra 'minilm'")
@@ -61,7 +62,7 @@ def xml_of(item):
     return ET.tostring(item.get_element())
 
 
-@pytest.mark.parametrize("example", examples(), ids=lambda e: e.name)
+@pytest.mark.parametrize("example", spread(examples(), 3), ids=lambda e: e.name)
 def test_a_worked_scenario_compiles_and_its_contact_comes_about(example):
     spec = road_spec(example.layout)
     network = compile_network(plain_xml(spec), spec)

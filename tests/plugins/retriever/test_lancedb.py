@@ -160,6 +160,7 @@ def test_a_killed_addition_is_not_read_and_does_no_harm(folder):
     assert ids(LanceDB(folder=folder).search("giraffe okapi")) == ["api/whole"]
 
 
+@pytest.mark.slow
 def test_a_build_killed_halfway_leaves_the_index_before(folder):
     before = files_of(folder)
     code = f"""
@@ -262,6 +263,7 @@ def test_unit_rows_have_length_one_and_zero_stays():
     assert rows.dtype == np.float32
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_index(tmp_path):
     import psutil
 

@@ -66,6 +66,7 @@ def test_who_comes_from_beside_the_road_comes_from_the_side_that_it_leaves(monke
         assert {text.split()[1], text.rstrip(".").split()[3]} == {"left", "right"}
 
 
+@pytest.mark.slow
 def test_who_stands_for_a_light_or_a_sign_tells_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(motion_clauses.WHY, "light", group("QLIGHT<signal>"))
     monkeypatch.setitem(motion_clauses.WHY, "sign", group("QSIGN<sign>"))

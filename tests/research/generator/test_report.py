@@ -143,6 +143,7 @@ def test_a_road_whose_lanes_nobody_tells_is_most_often_a_plain_one() -> None:
     assert 0.55 < plain[True] / sum(plain.values()) < 0.9
 
 
+@pytest.mark.slow
 def test_where_one_waits_to_turn_to_is_known_only_from_words_that_say_so() -> None:
     found = {False: 0, True: 0}
     for report in (text_report(s, length=0.1) for s in range(many(1500, 2000))):
@@ -155,6 +156,7 @@ def test_where_one_waits_to_turn_to_is_known_only_from_words_that_say_so() -> No
     assert min(found.values()) > 2
 
 
+@pytest.mark.slow
 def test_a_drawing_may_show_a_junction_that_the_narrative_passes_over(monkeypatch: pytest.MonkeyPatch) -> None:
     def silent() -> int:
         found = 0
@@ -175,6 +177,7 @@ def test_a_drawing_may_show_a_junction_that_the_narrative_passes_over(monkeypatc
     assert some > silent() + 4
 
 
+@pytest.mark.slow
 def test_drawings_of_junctions_rarely_show_driveways_that_no_text_tells_of() -> None:
     reports = [make_report(s, length=0.1, modes={"image": 1.0}) for s in range(600)]
     near = [bool(r.road["accesses"]) for r in reports if r.crash.layout in ("t", "four")]
@@ -199,6 +202,7 @@ def test_a_one_way_street_whose_lanes_nobody_counts_mostly_has_one() -> None:
     assert 0.7 < lanes.count(1) / len(lanes) < 0.97
 
 
+@pytest.mark.slow
 def test_what_no_words_can_tell_is_not_told() -> None:
     """Which way one backs out, and whether one that hit a parked vehicle had kept its lane, where nobody says so."""
     backing, parked = 0, {True: 0, False: 0}
@@ -218,6 +222,7 @@ def test_what_no_words_can_tell_is_not_told() -> None:
     assert min(parked.values()) > 5
 
 
+@pytest.mark.slow
 def test_drawings_train_on_kinds_that_are_seldom_seen() -> None:
     shares = {}
     for mode, held_out in (("image", False), ("text", False), ("image", True)):

@@ -37,11 +37,13 @@ def test_both_sides_of_the_split_have_clauses(options: Group) -> None:
     assert not set(train) & set(test)
 
 
+@pytest.mark.slow
 def test_texts_are_thousands_of_forms() -> None:
     shapes = {re.sub(r"\d+|[A-Z][\w-]*", "#", text_report(seed).narrative) for seed in range(1500)}
     assert len(shapes) > 1450
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("base", range(0, many(1, 8000), 4000))
 def test_who_is_told_to_be_behind_is_the_striker(base: int) -> None:
     told = 0

@@ -113,6 +113,7 @@ def test_picks_point_at_value_tokens(coder: Coder) -> None:
     assert ',"direction":' not in spoken
 
 
+@pytest.mark.slow
 def test_where_more_digits_might_follow_the_end_of_a_number_is_learned(coder: Coder) -> None:
     seen = 0
     for seed in range(400):

@@ -118,6 +118,7 @@ def steps_of(folder: Path) -> int:
     return int(torch.load(folder / checkpoint.STATE, weights_only=True)["steps"])
 
 
+@pytest.mark.slow
 def test_a_step_draws_nothing_from_the_global_generators(tmp_path: Path) -> None:
     """No checkpoint keeps them."""
     trainer = Trainer(parse(options(tmp_path, 2)))

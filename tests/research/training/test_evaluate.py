@@ -62,6 +62,7 @@ def test_both_queries_are_answered_in_valid_specs(backbone: HfVision, seed: int)
     parse_answer(backbone.generate(context(seed), query, Cad(alpha=0.5)).text, BehaviorSpec)
 
 
+@pytest.mark.slow
 def test_the_products_engine_and_the_trainers_decoder_agree(backbone: HfVision) -> None:
     """Forced tokens, grammar and cached rows of two engines that share no code give one answer."""
     report = make_report(SEEDS[0], length=0.3, modes={"both": 1.0})

@@ -183,6 +183,7 @@ def test_a_run_of_seconds_learns_and_leaves_a_loadable_export(tmp_path: Path) ->
     json.loads((tmp_path / "export" / "preprocessor_config.json").read_text())
 
 
+@pytest.mark.slow
 def test_a_run_can_begin_with_exported_weights(tmp_path: Path) -> None:
     Trainer(parse(options(tmp_path / "first", 2))).run()
     second = Trainer(parse([*options(tmp_path / "second", 2), "--start", str(tmp_path / "first" / "export")]))

@@ -143,6 +143,7 @@ def test_the_file_with_traffic_has_the_same_crash_and_no_other_contact():
     assert PLAYED_CLEAR_M < CLEAR_M
 
 
+@pytest.mark.slow
 def test_traffic_of_a_file_that_has_some_is_put_in_its_place():
     first = add_traffic(scene(), crossroads().xodr, "dense", 3, DRIVE)
     with_some = CrashScene("made", scene().actors, scene().trajectories, scene().net_xml, first.xosc)

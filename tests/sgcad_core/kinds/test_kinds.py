@@ -17,6 +17,7 @@ from sgcad_core import kinds
 from sgcad_core.reading.language import rule, values
 from sgcad_core.records import specs
 from sgcad_core.records.answer_schema import trained_schema
+from tests.sources import tree
 
 
 def test_literals_and_records_are_the_same() -> None:
@@ -80,22 +81,22 @@ OF_FORMATS = {
 """Where `roundabout` is a word of the file format."""
 
 
-def _literals(tree: ast.AST) -> Iterator[ast.Constant]:
+def _literals(module: ast.AST) -> Iterator[ast.Constant]:
     """Texts of the code: no docstrings, no messages, no types."""
     aside: set[int] = set()
-    for node in ast.walk(tree):
+    for node in ast.walk(module):
         if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name) and node.value.id == "Literal":
             aside |= {id(inner) for inner in ast.walk(node.slice)}
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
             aside.add(id(node.value))
         if isinstance(node, ast.JoinedStr):
             aside |= {id(inner) for inner in ast.walk(node)}
-    yield from (n for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in aside)
+    yield from (n for n in ast.walk(module) if isinstance(n, ast.Constant) and id(n) not in aside)
 
 
 def _spelled(file: Path) -> list[str]:
     known = SPELLED - ({kinds.ROUNDABOUT} if str(file.relative_to(ROOT)) in OF_FORMATS else set())
-    found = [n for n in _literals(ast.parse(file.read_text(encoding="utf-8"))) if n.value in known]
+    found = [n for n in _literals(tree(file)) if n.value in known]
     return [f"{file.relative_to(ROOT)}:{n.lineno}: {n.value!r}" for n in found]
 
 
@@ -107,18 +108,18 @@ def test_no_module_outside_the_registry_spells_a_kind() -> None:
 
 
 def test_a_kind_that_is_spelled_is_seen() -> None:
-    tree = ast.parse('"""ramp"""\nKind = Literal["ramp"]\nif road.kind in ("ramp", "driveway"):\n    pass\n')
-    assert [n.lineno for n in _literals(tree) if n.value in SPELLED] == [3, 3]
+    module = ast.parse('"""ramp"""\nKind = Literal["ramp"]\nif road.kind in ("ramp", "driveway"):\n    pass\n')
+    assert [n.lineno for n in _literals(module) if n.value in SPELLED] == [3, 3]
 
 
 LAYOUTS = {record.layout for record in kinds.JUNCTIONS if record.layout} | {kinds.ROAD}
 """Names that mean something else too, so that they are looked for where a kind or a layout is asked for."""
 
 
-def _asked(tree: ast.AST) -> list[int]:
+def _asked(module: ast.AST) -> list[int]:
     """Lines that compare a layout or a kind of road with a text, or make one of such a text."""
     found = []
-    for node in ast.walk(tree):
+    for node in ast.walk(module):
         if not isinstance(node, (ast.Compare, ast.Dict, ast.keyword, ast.AnnAssign)):
             continue
         names = {getattr(n, "attr", getattr(n, "id", None)) for n in ast.walk(node)} | {getattr(node, "arg", None)}
@@ -131,7 +132,7 @@ def _asked(tree: ast.AST) -> list[int]:
 
 def test_the_generator_spells_no_layout_and_no_kind_of_road() -> None:
     files = [f for folder in MADE for f in sorted((ROOT / folder).rglob("*.py"))]
-    found = [f"{f.relative_to(ROOT)}:{n}" for f in files for n in _asked(ast.parse(f.read_text(encoding="utf-8")))]
+    found = [f"{f.relative_to(ROOT)}:{n}" for f in files for n in _asked(tree(f))]
     assert found == [], "take the name from sgcad_core.kinds"
 
 

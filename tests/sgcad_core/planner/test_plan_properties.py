@@ -19,7 +19,7 @@ from sgcad_core.planner.motion import LEAD_S
 from sgcad_core.planner.scene import AFTER_S
 from sgcad_core.records.specs import ActorKind, Area, BehaviorSpec, Maneuver, size_m
 from sgcad_core.roads.lane_graph import road_of
-from tests.effort import many
+from tests.effort import many, spread
 from tests.sgcad_core.planner.crash_scenes import LAYOUTS, draw_scene, network
 
 STEP_S = 0.05
@@ -115,6 +115,7 @@ def check_driven(behavior: BehaviorSpec, made: Plan) -> None:
     assert deepest_overlap(made.trajectories, sizes, at_rest=True)[0] == 0
 
 
+@pytest.mark.slow
 @settings(max_examples=EXAMPLES, deadline=None)
 @given(behaviors())
 def test_any_behavior_gives_finite_continuous_motion_on_one_clock(case):
@@ -153,7 +154,7 @@ def test_drawn_crashes_keep_every_promise(seed):
     check_driven(behavior, made)
 
 
-@pytest.mark.parametrize("seed", range(3000, 3060))
+@pytest.mark.parametrize("seed", spread(range(3000, 3060), 5))
 def test_drawn_crashes_can_be_driven(seed):
     _, layout, behavior = draw_scene(seed)
     check_driven(behavior, plan(behavior, network(layout)))
@@ -186,7 +187,7 @@ def turned(track, k: int) -> float:
     return math.degrees(np.unwrap(track.heading_rad[: k + 1])[-1] - track.heading_rad[0])
 
 
-@pytest.mark.parametrize("seed", range(200, 260))
+@pytest.mark.parametrize("seed", spread(range(200, 260), 5))
 def test_maneuvers_show_before_contact(seed):
     """As an observer tells them: standing moves under 2 m, a turn turns over 12 degrees its way."""
     _, layout, behavior = draw_scene(seed)

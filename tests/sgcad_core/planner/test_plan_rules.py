@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from sgcad_core.geometry.plane import box_gaps
 from sgcad_core.planner import Plan, plan
 from sgcad_core.planner.lines.box_angles import SLIDES
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
+from tests.effort import spread
 from tests.sgcad_core.planner.crash_scenes import network
 
 MPH = 0.44704
@@ -109,8 +111,7 @@ def test_declared_sides_touch_first(layout, first, second, declared):
     assert made.realised, (made.contact, made.notes)
 
 
-@pytest.mark.parametrize("own", ["front", "back", "left", "right"])
-@pytest.mark.parametrize("other", ["front", "back", "left", "right"])
+@pytest.mark.parametrize(("own", "other"), spread(product(("front", "back", "left", "right"), repeat=2), 3))
 def test_any_two_sides_can_be_brought_together_where_two_cross(own, other):
     _, made = planned(
         "four_leg", actor("V1", "straight", "S"), actor("V2", "straight", "E"), contacts=(f"V1 {own} V2 {other}",)

@@ -19,6 +19,7 @@ from sgcad_core.roads.connections import links
 from sgcad_core.roads.lane_graph import road_of
 from sgcad_core.roads.layout import road_spec
 from sgcad_core.roads.road_geometry import Roadway, lane_width_m, lanes, roadways
+from tests.effort import spread
 
 OPPOSITE = {"N": "S", "S": "N", "E": "W", "W": "E"}
 SIDE = (Leg(bearing="E", lanes_in=1, lanes_out=1), Leg(bearing="W", lanes_in=1, lanes_out=1))
@@ -121,8 +122,10 @@ def test_a_road_with_a_left_turn_lane_keeps_its_line_behind_a_driveway() -> None
     assert np.abs(jogs(road_spec(layout), "N_joint")).max() < 0.02
 
 
-@pytest.mark.parametrize("median", get_args(Median))
-@pytest.mark.parametrize(("left", "other"), [(1, 1), (1, 0), (2, 1)])
+LINED_UP = [(median, *lanes) for lanes in ((1, 1), (1, 0), (2, 1)) for median in get_args(Median)]
+
+
+@pytest.mark.parametrize(("median", "left", "other"), spread(LINED_UP, 4))
 def test_lined_up_roads_are_sound_in_both_files(median: Median, left: int, other: int) -> None:
     doors = (Access(leg="N", side="both", distance_m=60),)
     legs = (leg("N", left, 2, 2, median=median, control="signal"), leg("S", other, 2, 2, control="signal"), *SIDE)

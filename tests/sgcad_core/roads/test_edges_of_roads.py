@@ -24,6 +24,7 @@ from sgcad_core.reading.reading import read
 from sgcad_core.reading.roads.told_roads import told_roads
 from sgcad_core.records.specs import Beside, Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
+from tests.effort import spread
 
 ALL: tuple[Beside, ...] = ("sidewalk", "parking", "bike_lane")
 CASES: list[tuple[tuple[Beside, ...], bool, int, int]] = [
@@ -41,7 +42,7 @@ def network(beside: tuple[Beside, ...], crosswalk: bool = False, legs: int = 4, 
     return compile_network(plain_xml(spec), spec)
 
 
-@pytest.mark.parametrize(("beside", "crosswalk", "legs", "circle"), CASES)
+@pytest.mark.parametrize(("beside", "crosswalk", "legs", "circle"), spread(CASES, 2))
 def test_roads_with_edges_pass_what_roads_pass(
     beside: tuple[Beside, ...], crosswalk: bool, legs: int, circle: int
 ) -> None:

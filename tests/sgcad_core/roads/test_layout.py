@@ -14,6 +14,7 @@ from sgcad_core.geometry.distances import distance_to
 from sgcad_core.geometry.plane import arc_lengths
 from sgcad_core.records.specs import Access, Compass, Leg, Median, Node, Road, RoadLayout, RoadSpec
 from sgcad_core.roads.layout import COMPASS, LEG_M, road_spec
+from tests.effort import spread
 
 
 def leg(bearing: str, lanes_in: int = 1, lanes_out: int = 1, **more: object) -> Leg:
@@ -168,9 +169,15 @@ def test_every_layout_compiles_to_one_network_with_its_lanes(chosen: list[Leg]) 
         assert len(graph.edges[f"-{x.bearing}"].car_lanes) == x.lanes_out
 
 
-@pytest.mark.parametrize("own", ["N", "NE", "E"])
-@pytest.mark.parametrize(("lanes", "median"), [(1, "none"), (2, "grass"), (3, "grass"), (3, "barrier")])
-@pytest.mark.parametrize("leaves", [False, True])
+RAMPS = [
+    (own, lanes, median, leaves)
+    for leaves in (False, True)
+    for lanes, median in ((1, "none"), (2, "grass"), (3, "grass"), (3, "barrier"))
+    for own in ("N", "NE", "E")
+]
+
+
+@pytest.mark.parametrize(("own", "lanes", "median", "leaves"), spread(RAMPS, 4))
 def test_a_ramp_meets_the_outer_lane_of_its_road(own: Compass, lanes: int, median: Median, leaves: bool) -> None:
     back = COMPASS[(COMPASS.index(own) + 4) % 8]
     side = COMPASS[(COMPASS.index(own) + (5 if leaves else -1)) % 8]

@@ -8,6 +8,7 @@ import pytest
 from PIL import EpsImagePlugin, Image, UnidentifiedImageError
 
 from sgcad_core.system.pictures import FORMATS, opened
+from tests.sources import tree
 
 ROOT = Path(__file__).parents[3]
 EPS = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 10 10\n%%EndComments\nshowpage\n%%EOF\n"
@@ -44,7 +45,7 @@ def test_no_other_module_of_the_product_opens_pictures():
         str(file.relative_to(ROOT))
         for folder in ("sgcad_core", "plugins", "flows")
         for file in (ROOT / folder).rglob("*.py")
-        for node in ast.walk(ast.parse(file.read_text()))
+        for node in ast.walk(tree(file))
         if isinstance(node, ast.Attribute) and ast.unparse(node) == "Image.open"
     ]
     assert found == ["sgcad_core/system/pictures.py"]

@@ -4,16 +4,30 @@ import json
 import os
 import shutil
 import time
+from itertools import product
 
 import pytest
 
+from flows.desk import index
 from flows.desk.views.folder_files import odd_files, result_in, text_of
 from flows.desk.views.result_shape import shape_fault
+from tests.effort import spread
 
 CASE = "left-turn-at-signal"
 LIMIT_S = 10
 GOOD = {"status": "generated", "facts": [], "notes": []}
 FACT = {"field": "junction.kind", "value": "4-leg", "basis": "text", "status": "stated", "confidence": 0.5}
+
+
+FILES = ("result.json", "report.txt", "road.net.xml", "trajectories.csv", "player.html", "links.json", ".source",
+         "specs.json", "facts.yaml", "diagram.png", "attempts/road-01/findings.json")  # fmt: skip
+BESIDE = ("links.json", "specs.json", "steps.json", "attempts/road-01/attempt.json")
+
+
+@pytest.fixture(autouse=True)
+def _at_once(monkeypatch):
+    """The folder is looked through for every list: pages may not show what stood there before."""
+    monkeypatch.setattr(index, "FRESH_S", 0.0)
 
 
 def pages(key):
@@ -24,7 +38,6 @@ def pages(key):
 
 def seen(client, key):
     """Answers of every page of a case, none of them a 5xx and none late."""
-    time.sleep(0.31)  # within FRESH_S the folder is not looked through again
     found = {}
     for page in pages(key):
         began = time.monotonic()
@@ -48,11 +61,7 @@ def test_a_link_that_leads_out_is_not_shown_and_a_pipe_is_not_waited_for(tmp_pat
     ]
 
 
-@pytest.mark.parametrize(
-    "name", ["result.json", "report.txt", "road.net.xml", "trajectories.csv", "player.html", "links.json", ".source",
-             "specs.json", "facts.yaml", "diagram.png", "attempts/road-01/findings.json"],
-)  # fmt: skip
-@pytest.mark.parametrize("kind", ["pipe", "link", "folder"])
+@pytest.mark.parametrize(("kind", "name"), spread(product(("pipe", "link", "folder"), FILES), 3))
 def test_no_page_waits_for_a_pipe_or_shows_what_a_link_leads_to(client, config, tmp_path, name, kind):
     place = config / CASE / name
     place.unlink(missing_ok=True)
@@ -110,8 +119,7 @@ def test_an_odd_result_is_a_page_that_says_what_is_odd(client, config, name):
     assert "unreadable" in answers["/"].text
 
 
-@pytest.mark.parametrize("name", [n for n in ODD if n != "no status"])
-@pytest.mark.parametrize("file", ["links.json", "specs.json", "steps.json", "attempts/road-01/attempt.json"])
+@pytest.mark.parametrize(("file", "name"), spread(product(BESIDE, [n for n in ODD if n != "no status"]), 4))
 def test_odd_json_beside_a_result_costs_no_page(client, config, file, name):
     content = ODD[name]
     (config / CASE / file).write_bytes(content if isinstance(content, bytes) else content.encode())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from plugins.decoder.cad import Cad
 from research.benchmarks.decoding.served import Pages, serving
 from research.benchmarks.decoding.served_model import ServedModel
 from sgcad_core.case.records import Query
+from tests.effort import spread
 from tests.plugins.backbone.folders import context, save
 from tests.plugins.backbone.test_openai_server import SCHEMA
 
@@ -101,8 +103,7 @@ def test_values_by_name_are_those_of_a_prompt_each(url: str, model: ServedModel)
     assert named.exact(prompt, [5], tokens) == pytest.approx(old.exact(prompt, [5], tokens), abs=1e-4)
 
 
-@pytest.mark.parametrize("tells_named", [True, False])
-@pytest.mark.parametrize("schema", [SCHEMA, None])
+@pytest.mark.parametrize(("schema", "tells_named"), spread(product((SCHEMA, None), (True, False)), 3))
 def test_tokens_equal_those_in_process(
     tells_named: bool, schema: dict[str, Any] | None, url: str, folder: Path, model: ServedModel
 ) -> None:

@@ -7,10 +7,11 @@ from research.benchmarks.scenes.reimport import differences
 from research.benchmarks.scenes.roundtrip import main
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
+from tests.effort import spread
 from tests.sgcad_core.formats.road_samples import NAMED, compiled
 
 
-@pytest.mark.parametrize("name", NAMED)
+@pytest.mark.parametrize("name", spread(NAMED, 3))
 def test_named_networks_come_back_as_they_were(name):
     network = compiled(name)
     assert differences(network.net_xml, network.xodr, "sgcad") == []

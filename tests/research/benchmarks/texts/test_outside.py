@@ -69,6 +69,7 @@ def test_a_drawing_follows_from_the_report_and_stays_in_its_half() -> None:
     assert of_alone.blind == of_drawn.blind
 
 
+@pytest.mark.slow
 def test_weights_of_a_report_are_fitted_without_it_and_its_drawing(monkeypatch) -> None:
     some = cases([*TEXTS, *map(with_drawing, TEXTS)], {})
     monkeypatch.setattr(outside, "both_fits", lambda some: {n: (n, {c.id for c in some}) for n in (WHOLE, DRAWN)})
@@ -124,6 +125,7 @@ def test_without_answers_both_are_the_rules() -> None:
     assert fit(found) == {}
 
 
+@pytest.mark.slow
 def test_errors_are_shown_of_the_half_that_may_be_looked_at_alone() -> None:
     shown = "\n".join(rules_alone(TEXTS, "lanes"))
     blind = [case.id for case in cases(TEXTS, {}) if case.blind]

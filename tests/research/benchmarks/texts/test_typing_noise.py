@@ -3,6 +3,7 @@
 import gzip
 import json
 import random
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from research.benchmarks.texts import typing_noise
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.text.typos import one_slip
+from tests.effort import spread
 
 REPORTS = (
     "Vehicle 1 was traveling northbound in the right lane behind Vehicle 2. Vehicle 2 slowed for stopped traffic. "
@@ -29,8 +31,7 @@ def test_a_slip_is_one_edit_and_keeps_the_first_letter(word: str, seed: int) -> 
     assert slipped[0] == word[0]
 
 
-@pytest.mark.parametrize("kind", typing_noise.KINDS)
-@pytest.mark.parametrize("report", REPORTS)
+@pytest.mark.parametrize(("report", "kind"), spread(product(REPORTS, typing_noise.KINDS), 4))
 def test_a_report_is_read_through_noise(kind: str, report: str) -> None:
     def told(text: str) -> dict[str, object]:
         return {f.field: f.value for f in read(text).facts if f.field.startswith(("vehicles", "contacts"))}

@@ -71,6 +71,7 @@ def test_frames_stand_on_both_sides_of_the_split_and_use_known_slots(options: Gr
     assert {slot for clause in trained + held for slot in slots_of(clause)} <= set(SLOTS_KNOWN.split())
 
 
+@pytest.mark.slow
 def test_left_turns_are_coded_of_those_who_turn_left() -> None:
     told = 0
     for seed in range(many(1500, 4000)):
@@ -85,6 +86,7 @@ def test_left_turns_are_coded_of_those_who_turn_left() -> None:
     assert told > many(3, 8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("held_out", [False, True])
 def test_speeds_are_told_of_those_whom_the_paragraph_has_named(held_out: bool) -> None:
     pronouns = 0

@@ -133,6 +133,7 @@ def _junction(crash: Crash) -> bool:
     return crash.layout in ("four", "t")
 
 
+@pytest.mark.slow
 def test_one_limit_is_told_of_both_roads_only_where_it_holds_on_both(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(road_clauses, "LIMITS", group("Everywhere {lim}"))
     found = 0
@@ -145,6 +146,7 @@ def test_one_limit_is_told_of_both_roads_only_where_it_holds_on_both(monkeypatch
     assert found >= 5
 
 
+@pytest.mark.slow
 def test_lanes_of_both_roads_are_told_at_once_only_where_they_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(road_clauses, "ALIKE", {"two_way": group("Twice {each}"), "one_way": group("Once {each}")})
     monkeypatch.setattr(writer, "slips", lambda rng, text, rate: text)
@@ -163,6 +165,7 @@ def test_lanes_of_both_roads_are_told_at_once_only_where_they_are_the_same(monke
     assert found == {"Twice", "Once"}
 
 
+@pytest.mark.slow
 def test_both_roads_of_a_junction_in_one_sentence_keep_their_axes_apart(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(road_clauses, "PAIR", group("QQ {a1}={one}; RR {a2}={other}"))
     monkeypatch.setattr(
@@ -189,6 +192,7 @@ def _lies(bearing: int, axis: str) -> bool:
     }
 
 
+@pytest.mark.slow
 def test_a_limit_told_beside_a_heading_is_that_of_the_road_in_that_direction() -> None:
     crossing = 0
     for seed in range(1500):
@@ -202,6 +206,7 @@ def test_a_limit_told_beside_a_heading_is_that_of_the_road_in_that_direction() -
     assert crossing > 20
 
 
+@pytest.mark.slow
 def test_the_limit_of_the_other_road_is_laid_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(scene_clauses, "ROAD2", group("QQ the side street has {lim2}"))
     told = 0

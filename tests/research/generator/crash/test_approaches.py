@@ -52,6 +52,7 @@ def test_what_a_clause_has_a_place_for_is_told_where_words_stand_in_it(monkeypat
     assert plain > 20
 
 
+@pytest.mark.slow
 def test_the_same_intersection_is_one_that_was_named() -> None:
     seen = 0
     for seed in range(1500):
@@ -63,6 +64,7 @@ def test_the_same_intersection_is_one_that_was_named() -> None:
     assert seen > 30
 
 
+@pytest.mark.slow
 def test_who_came_up_the_leg_that_ends_came_from_where_that_lies(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(motion_clauses, "FROM_STEM", {"t": group("QQ {V}"), "driveway": group("QQ {V}")})
     monkeypatch.setattr(approaches, "UNSAID", 1.0)

@@ -3,6 +3,7 @@
 import re
 from collections import Counter
 from collections.abc import Iterator
+from itertools import product
 from random import Random
 
 import pytest
@@ -15,6 +16,7 @@ from research.generator.crash.crash import sample_crash
 from research.generator.crash.impacts import ORDERS, order_of
 from research.generator.records import Group, group
 from research.generator.report import Report, make_report
+from tests.effort import spread
 from tests.research.reports import sentences
 
 
@@ -50,6 +52,7 @@ def _chosen(held_out: bool, count: int, monkeypatch: pytest.MonkeyPatch) -> list
     return chosen
 
 
+@pytest.mark.slow
 def test_where_sides_do_not_tell_who_strikes_every_order_of_words_trains_alike(monkeypatch: pytest.MonkeyPatch) -> None:
     made: dict[bool, Counter[str]] = {True: Counter(), False: Counter()}
     for options, open_, clause in _chosen(False, 900, monkeypatch):
@@ -103,6 +106,7 @@ def test_nobody_sits_in_a_parked_vehicle_that_is_struck(monkeypatch: pytest.Monk
     assert all(text.startswith("QQ") for text in told), told
 
 
+@pytest.mark.slow
 def test_a_third_vehicle_was_not_in_the_first_impact_and_the_other_was(monkeypatch: pytest.MonkeyPatch) -> None:
     clauses = [
         "{S} was [knocked|propelled] into {T}, {sa} to {ta}<again>",
@@ -118,8 +122,9 @@ def test_a_third_vehicle_was_not_in_the_first_impact_and_the_other_was(monkeypat
     assert told > 20
 
 
-@pytest.mark.parametrize("words", ["both drivers agree", "before either could stop"])
-@pytest.mark.parametrize("place", ["LEADS", "TAILS"])
+@pytest.mark.parametrize(
+    ("words", "place"), spread(product(("both drivers agree", "before either could stop"), ("LEADS", "TAILS")), 4)
+)
 def test_nothing_is_said_of_both_where_one_strikes_a_thing(
     words: str, place: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

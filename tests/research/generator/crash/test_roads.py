@@ -2,6 +2,7 @@
 
 from random import Random
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -52,6 +53,7 @@ def test_some_one_way_streets_meet_two_way_ones_and_some_end_at_a_t() -> None:
     assert {("four", 2), ("t", 2), ("plain", 1), ("driveway", 1)} <= set(found)
 
 
+@pytest.mark.slow
 def test_one_carriageway_is_drawn_of_some_divided_roads() -> None:
     found = 0
     for seed in range(many(1500, 2500)):

@@ -119,6 +119,7 @@ def test_the_sun_does_not_shine_at_night() -> None:
     assert not any(suns.values())
 
 
+@pytest.mark.slow
 def test_sun_tells_daylight_and_a_clear_sky(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(scene_clauses, "CONDITIONS", group("QQ {wx}", "RR {light}"))
     for name, key in (("LIGHT", "day"), ("WEATHER", "clear")):

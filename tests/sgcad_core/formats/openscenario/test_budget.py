@@ -156,6 +156,7 @@ def test_fifty_thousand_parameters_are_refused():
         ParameterSets(sets_of(stochastic(UNIFORM, count=50_000)))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("cheap")
 def test_ranges_of_many_parameters_take_no_memory():
     wide = (
@@ -202,6 +203,7 @@ def waypoint(entry, count):
     return f'<Waypoint routeStrategy="shortest">{route}</Waypoint>' * count
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("cheap")
 def test_catalogs_that_branch_end(tmp_path):
     entries = "".join(f'<Route name="r{k}" closed="false">{waypoint(f"r{k + 1}", 8)}</Route>' for k in range(9))

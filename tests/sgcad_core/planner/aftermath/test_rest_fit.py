@@ -147,6 +147,7 @@ def test_a_slide_among_many_ways_ends_where_it_ends_alone(turning, yaws) -> None
     assert ways[-1][1] == pytest.approx((one.x, one.y, one.heading), abs=1e-6)
 
 
+@pytest.mark.slow
 @given(st.floats(3, 30), st.floats(-4, 4), st.floats(1.5, 7), st.floats(0.35, 1), st.floats(-1, 1))
 @settings(max_examples=60, deadline=None)
 def test_a_body_that_slides_turns_and_keeps_its_way(mps, spin, along, turning, drags) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ from sgcad_core.planner import Plan, plan
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.records.course import Courses, CourseTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
+from tests.effort import spread
 from tests.sgcad_core.planner.crash_scenes import network
 
 
@@ -31,8 +34,10 @@ def out(layout: str, made: Plan, *actors: Actor) -> list[str]:
     return [one.actor for one in untold_places(network(layout), made.trajectories, infos, CrashFacts(()))]
 
 
-@pytest.mark.parametrize("sides", [("front", "back"), ("right", "left"), ("left", "left"), ("front", "left")])
-@pytest.mark.parametrize("layout", ["straight", "straight_wide"])
+SIDES = [("front", "back"), ("right", "left"), ("left", "left"), ("front", "left")]
+
+
+@pytest.mark.parametrize(("layout", "sides"), spread(product(("straight", "straight_wide"), SIDES), 3))
 def test_two_that_drive_one_way_stay_in_their_lanes_whatever_sides_are_told(layout, sides) -> None:
     road = "S" if layout == "straight" else "E"
     pair = actor("V1", "straight", road), actor("V2", "straight", road)

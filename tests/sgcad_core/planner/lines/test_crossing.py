@@ -35,6 +35,7 @@ def _turned_deg(made: Plan, name: str) -> float:
     return math.degrees(float(np.abs(heading - heading[0]).max()))
 
 
+@pytest.mark.slow
 @settings(max_examples=8, deadline=None)
 @given(st.sampled_from([None, 25, 35, 45]), st.sampled_from([None, 30, 40]))
 def test_a_front_that_crosses_the_centerline_meets_a_flank_and_only_it_turns(
