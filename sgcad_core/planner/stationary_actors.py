@@ -12,13 +12,16 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, Twist, facing
 from sgcad_core.planner.lines.box_angles import ASKEW, aiming
+from sgcad_core.planner.lines.crossing import end_meets_flank
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.long_things import hand_of_side, is_long, meeting_angle, turned_to
 from sgcad_core.planner.motion import Motion
 
 _IN_LANE = 0.9
 """Cost of standing in the lane although there is a place beside it: more than that of a way out of the lane to it."""
-
+_NEEDED_ASKEW = ((0.15, 15), (0.15, -15), (0.25, 24), (0.25, -24))
+"""Costs and degrees of standing slightly turned where an end is told to meet a flank, which takes an angle between the
+two."""
 _ACROSS = 0.8
 """Cost of a long thing that stands across the way, over that of one along it."""
 
@@ -64,6 +67,8 @@ def askew(role: Role) -> list[Twist]:
     if in_stall(role):
         return [Twist(0.0, -math.pi / 2), Twist(0.05, math.pi / 2)]
     small = [Twist(0.2 + abs(a) / 60, math.radians(a), ASKEW) for a in (15, -15, 35, -35)]
+    if end_meets_flank(role):
+        small += [Twist(cost, math.radians(a), ASKEW) for cost, a in _NEEDED_ASKEW]
     return [Twist(0.0), *small, *aiming(role)]
 
 

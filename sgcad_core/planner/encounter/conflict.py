@@ -27,7 +27,7 @@ from sgcad_core.planner.encounter.motion_options import (
 from sgcad_core.planner.encounter.pairing import Encounter, Stage, Ways, cannot, search
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.box_angles import ASKEW
-from sgcad_core.planner.lines.crossing import implied_crossings
+from sgcad_core.planner.lines.crossing import end_meets_flank, implied_crossings
 from sgcad_core.planner.lines.departures import departs, departure_sides, departure_station, side_of
 from sgcad_core.planner.lines.told_moves import with_room
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
@@ -44,8 +44,10 @@ _LAST_TRIES = 90
 """Combinations tried with boxes that slide against their direction, since no driving brings the sides together."""
 _ONE_TURNS = 24
 """Combinations tried in which only one of the two turns its side to the other."""
-_SLIGHT_RAD, _SLIGHTLY = math.radians(20.0), 4
+_SLIGHT_RAD, _SLIGHTLY = math.radians(25.0), 4
 """Angle at which a standing vehicle is still in line with the others, and the number of such options."""
+_SLIGHT = 60
+"""Combinations tried with a standing vehicle that is turned so, where an end is told to meet a flank."""
 _TURNING = 40
 """Combinations tried with other lines of a turn."""
 
@@ -111,6 +113,10 @@ class Conflicts:
 
         yield Stage(both(_as_told), _AS_TOLD, _TOLD_ENOUGH)
         plain = both(plainly)
+        if end_meets_flank(a) and is_standing(a) != is_standing(b):
+            slight = both(_slightly_askew)
+            told = both(_as_told)
+            yield Stage((slight[0] or told[0], slight[1] or told[1]), _SLIGHT, _TOLD_ENOUGH)
         if implied_crossings(a) or implied_crossings(b):
             steep = both(steeply)
             yield Stage((steep[0], plain[1]), _TRIES[0])
