@@ -226,6 +226,7 @@ def _deeds(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     done = {str(word) for v in vehicles for word in (v.maneuver, v.meant) if word}
     leaves = any(made.reading.crash.courses.get(v.id, CourseTold()).departs for v in vehicles)
     done |= {"departing_road"} if made.reading.lost_control or leaves else set()
+    done |= {f"lane_change_{v.straddles}" for v in vehicles if v.straddles}
     done |= {"overtaking"} if _go_past(made, [v.id for v in vehicles]) else set()
     for deed, words in _told_deeds(sentence.text):
         if not any(made_so.startswith(_SATISFIED_BY.get(deed, (deed,))) for made_so in done):

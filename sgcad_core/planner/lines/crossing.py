@@ -25,11 +25,11 @@ _SWING_RUN, _SWING_BEND = 3.6, 0.46
 """Length over width of a way out that reaches 27 degrees, and the tightest radius over its width: the largest second
 derivative of the step is 5.77."""
 _REAR_M, _FLANK_AT, _LATE = 2.4, 0.3, 0.35
-"""From the middle of a car to its rear; where along its length a flank touches, from its middle; and the share of such a
-way that is left then."""
+"""From the middle of a car to its rear; where along its length a flank touches, from its middle; and the share of such
+a way that is left then."""
 _PAST_M = ((0.1, 0.05), (0.5, 0.05), (1.0, 0.1), (1.6, 0.15))
 """Room beside the other one behind such ways, with their costs."""
-_ALONG, _BEHIND_STANDING, _INTO_ONCOMING = 0.35, 0.3, 0.6
+_ALONG, _BEHIND_STANDING, _INTO_ONCOMING = 0.35, 0.15, 0.6
 """Costs of a change of line that nobody tells and that the told lanes and sides imply, of one back behind somebody who
 stands and was passed, and of one that leads into oncoming traffic: that is odd driving."""
 
