@@ -31,10 +31,8 @@ PUSHED_M = 0.8
 """Distance that a standing actor rolls when it is pushed into another one."""
 _QUEUE_M = 2.0
 """Between two that start from rest one behind the other."""
-_AGAINST = 0.8
-"""Cosine of the angle between two that come against each other."""
-_ONE_WAY_RAD = 0.6
-"""Angle between two that drive in one direction."""
+_AGAINST, _ONE_WAY_RAD = 0.8, 0.6
+"""Cosine of the angle between two that come against each other; angle between two that drive in one direction."""
 _STEEP_DEG = 60.0
 """Bearing of a vehicle alongside that is to be hit with the front."""
 
@@ -286,9 +284,9 @@ def start_m(role: Role) -> float:
 
 
 def _waits_behind(role: Role) -> bool:
-    """Whether it starts from rest behind the one that it runs into, which drives off, too, or stands there yet."""
-    one_way = abs(role.place.angle_rad) < _ONE_WAY_RAD and not is_standing(role)
-    return role.told.from_rest and (role.side, role.other_side) == ("front", "back") and one_way
+    """Whether it starts from rest behind the one that it runs into."""
+    starts = role.told.from_rest and not is_standing(role) and abs(role.place.angle_rad) < _ONE_WAY_RAD
+    return starts and (role.side, role.other_side) == ("front", "back")
 
 
 def line_m(role: Role) -> float:
