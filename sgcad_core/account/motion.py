@@ -204,6 +204,15 @@ def _from_rest(made: ExecutedCase, who: str, value: Value) -> Comparison:
     return Comparison(starts, round(slowest, 1), f"it never drives slower than {slowest:.1f} m/s before its contact")
 
 
+def _straddles(made: ExecutedCase, who: str, value: Value) -> Comparison:
+    """Whether the two sides of a vehicle are in two lanes at its first contact."""
+    pose = VehicleMotion(made.crash, who).before[-1:]
+    out = made.sizes[who][1] / 2 * np.column_stack((-np.sin(pose[:, 2]), np.cos(pose[:, 2]), np.zeros(1)))
+    left, right = (lane_steps(made.graph, pose + hand * out).lanes[0] for hand in (1.0, -1.0))
+    over = left != right and bool(left and right)
+    return Comparison(over, why="it stands in one lane")
+
+
 def _rolls(made: ExecutedCase, who: str, value: Value) -> Comparison:
     most = float(np.abs(made.tracks[who].rolls).max())
     return Comparison(most >= math.pi / 2 - 1e-3, round(math.degrees(most)), "it stays on its wheels")
@@ -280,7 +289,7 @@ _JUDGES: dict[str, Judge] = {
     "heading": _heading, "lane": _lane, "lane_word": _lane, "to_lane": _to_lane,
     "spin_deg": _spin_deg, "rest.side": _side,
     "rest.attitude": _attitude, "from_stop": _from_rest, "from_rest": _from_rest,
-    "rolls": _rolls, "roll_quarters": _roll_quarters,
+    "rolls": _rolls, "straddles": _straddles, "roll_quarters": _roll_quarters,
     "rolls_to": _rolls_to, "departs": _departs, "origin": _joins(_start), "target": _joins(_exit),
     "rest.distance_m": _distance, "rest.lane": _rest_lane, "rest.lane_way": _rest_lane,
 }  # fmt: skip

@@ -6,7 +6,9 @@ as lacking. Sentences that retell or judge (interviews, codes, injuries) are lef
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
+from itertools import combinations
 
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
@@ -23,7 +25,7 @@ _CALLED, _COUNTED, _FURTHER, _ANIMAL, _MANY_LEGS, _INTRODUCED = (
     rule("account.many_legs"), rule("account.introduced"),
 )  # fmt: skip
 _TURNING = rule("deeds.turning")
-_ASIDE = ("lane_change", "merge", "overtaking", "crossing_centerline", "turn_", "u_turn", "departing_road")
+_ASIDE = ("backing", "lane_change", "merge", "overtaking", "crossing_centerline", "turn_", "u_turn", "departing_road")
 _SATISFIED_BY: dict[str, tuple[str, ...]] = {
     "turn_left": ("turn_left", "u_turn", "merge"), "turn_right": ("turn_right", "merge"), "u_turn": ("u_turn",),
     "lane_change_left": _ASIDE, "lane_change_right": _ASIDE, "lane_change": _ASIDE, "overtaking": _ASIDE,
@@ -32,6 +34,8 @@ _SATISFIED_BY: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 """Act in the text -> prefixes of the maneuvers that show it; other acts occur within many maneuvers."""
 
+_AGAINST = 0.7
+"""Cosine of the angle between two that come against each other."""
 _PAIR = 2
 """Vehicles of a crash that has no further ones."""
 
@@ -228,10 +232,18 @@ def _deeds(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     done = {str(word) for v in vehicles for word in (v.maneuver, v.meant) if word}
     leaves = any(made.reading.crash.courses.get(v.id, CourseTold()).departs for v in vehicles)
     done |= {"departing_road"} if made.reading.lost_control or leaves else set()
+    done |= {f"lane_change_{v.straddles}" for v in vehicles if v.straddles}
+    done |= {"overtaking"} if _go_past(made, [v.id for v in vehicles]) else set()
     for deed, words in _told_deeds(sentence.text):
         if not any(made_so.startswith(_SATISFIED_BY.get(deed, (deed,))) for made_so in done):
             who = " and ".join(v.id for v in vehicles)
             yield _lacks(sentence, "deed", f"{who} {deed}", f"{who}: {words!r}", "nobody there does so in the scenario")
+
+
+def _go_past(made: ExecutedCase, names: Sequence[str]) -> bool:
+    """Whether two of the vehicles come against each other: one that is said to pass the other one goes by it."""
+    first = [float(made.tracks[name].heading_rad[0]) for name in names if name in made.tracks]
+    return any(math.cos(one - other) < -_AGAINST for one, other in combinations(first, 2))
 
 
 def _told_deeds(text: str) -> Iterator[tuple[str, str]]:

@@ -108,7 +108,8 @@ def least_doubted(
     with the first reading. Readings that would resolve a doubt are still noted. The untold heading of a vehicle that is
     parked or comes from beside the road gives way where the contact takes clearly odd driving. In a report without
     numbered actors the other side of a corner is also used where the first one hides a stated maneuver, in any report
-    where the first one takes driving out of the lanes: the words fit both.
+    where the first one takes driving out of the lanes: the words fit both. In one without numbered actors the end of a
+    corner (or the flank of a front corner along a told flank) is also used where the first one takes odd driving.
     """
     most = doubt(first.behavior, first.planned, first.oddity) if first.behavior else 0.0
     out = _out_of_lanes(first.behavior, first.planned, facts, graph) if first.behavior else 0
@@ -124,7 +125,7 @@ def least_doubted(
             continue
         tried.append(TriedReading(other.words, left))
         gives_way = other.open or most >= _UNMET or (other.corner and hidden) or (other.either and out > 0)
-        gives_way |= other.heading and most >= _FORCED
+        gives_way |= (other.heading and most >= _FORCED) or (other.eases and most >= ODD_FROM)
         if gives_way and left < ODD_FROM and left + other.price < best[0]:
             best = (left + other.price, other.facts, other.words)
         if left <= 0.0 and gives_way:

@@ -31,8 +31,8 @@ PUSHED_M = 0.8
 """Distance that a standing actor rolls when it is pushed into another one."""
 _QUEUE_M = 2.0
 """Between two that start from rest one behind the other."""
-_AGAINST = 0.8
-"""Cosine of the angle between two that come against each other."""
+_AGAINST, _ONE_WAY_RAD = 0.8, 0.6
+"""Cosine of the angle between two that come against each other; angle between two that drive in one direction."""
 _STEEP_DEG = 60.0
 """Bearing of a vehicle alongside that is to be hit with the front."""
 
@@ -233,7 +233,7 @@ def mismatch(role: Role) -> float:
 
 def along_with(role: Role) -> bool:
     """Whether both drive in one direction, so that their speeds decide which one is behind."""
-    return abs(role.place.angle_rad) < 0.6 and not is_standing(role) and role.other_mps > 0
+    return abs(role.place.angle_rad) < _ONE_WAY_RAD and not is_standing(role) and role.other_mps > 0
 
 
 def comes_against(role: Role) -> bool:
@@ -277,11 +277,16 @@ def starts_at_m(role: Role, pacing: Pacing) -> float | None:
 
 def start_m(role: Role) -> float:
     """The station at which an actor that starts from rest stands: at its line, or behind the one that it runs into."""
-    behind = role.told.from_rest and (role.side, role.other_side) == ("front", "back") and along_with(role)
-    queued_m = (role.size[0] + _QUEUE_M) * behind
+    queued_m = (role.size[0] + _QUEUE_M) * _waits_behind(role)
     if role.course.turn is not None:
         return stop_m(role.course.turn.entry_m, role.size[0]) - queued_m
     return line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0) - queued_m
+
+
+def _waits_behind(role: Role) -> bool:
+    """Whether it starts from rest behind the one that it runs into."""
+    starts = role.told.from_rest and not is_standing(role) and abs(role.place.angle_rad) < _ONE_WAY_RAD
+    return starts and (role.side, role.other_side) == ("front", "back")
 
 
 def line_m(role: Role) -> float:

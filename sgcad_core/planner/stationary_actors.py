@@ -10,15 +10,20 @@ import math
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.planner.actor_plan import Drift, Role, Twist, facing
+from sgcad_core.planner.actor_plan import Drift, Role, Twist, facing, is_beside
 from sgcad_core.planner.lines.box_angles import ASKEW, aiming
+from sgcad_core.planner.lines.crossing import end_meets_flank
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.long_things import hand_of_side, is_long, meeting_angle, turned_to
 from sgcad_core.planner.motion import Motion
 
 _IN_LANE = 0.9
 """Cost of standing in the lane although there is a place beside it: more than that of a way out of the lane to it."""
-
+_OVER_A_LINE = ((0.4, 0.0), (0.5, 0.02), (0.3, 0.03), (0.6, 0.1))
+"""Shares of a lane's width from its middle at which a vehicle stands over the line, and their costs."""
+_NEEDED_ASKEW = ((0.3, 15), (0.3, -15), (0.4, 24), (0.4, -24))
+"""Costs and degrees of standing slightly turned where an end is told to meet a flank, which takes an angle between the
+two."""
 _ACROSS = 0.8
 """Cost of a long thing that stands across the way, over that of one along it."""
 
@@ -26,6 +31,9 @@ _ACROSS = 0.8
 def stand_offs(role: Role) -> list[Drift]:
     """How far beside its lane a standing actor stands."""
     width, right = role.size[1], role.course.right_edge_m
+    if role.told.straddles:
+        hand = 1.0 if role.told.straddles == "left" else -1.0
+        return [Drift(cost, hand * share * role.course.lane_width_m) for share, cost in _OVER_A_LINE]
     if role.actor.maneuver == "parked":
         curb, shoulder = -(right - width / 2 - 0.2), -(right + width / 2 + 0.3)
         lines = [(curb, 0.0), (shoulder, 0.1), ((curb + shoulder) / 2, 0.15), (curb / 2, 0.6), (0.0, 0.9)]
@@ -64,6 +72,9 @@ def askew(role: Role) -> list[Twist]:
     if in_stall(role):
         return [Twist(0.0, -math.pi / 2), Twist(0.05, math.pi / 2)]
     small = [Twist(0.2 + abs(a) / 60, math.radians(a), ASKEW) for a in (15, -15, 35, -35)]
+    if end_meets_flank(role) and (role.actor.maneuver == "stopped" or not is_beside(role.side)):
+        needed = _NEEDED_ASKEW[: 4 if role.actor.maneuver == "stopped" else 2]  # a row of the parked is straighter
+        small += [Twist(cost, math.radians(a), ASKEW) for cost, a in needed]
     return [Twist(0.0), *small, *aiming(role)]
 
 

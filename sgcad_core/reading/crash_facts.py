@@ -21,7 +21,7 @@ from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.maneuvers import meant_turn
 from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
 from sgcad_core.reading.text.conditions import Conditions
-from sgcad_core.records.course import Courses, CourseTold, ImpactTold
+from sgcad_core.records.course import Courses, CourseTold, Hand, ImpactTold
 from sgcad_core.records.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
 from sgcad_core.records.timeline import Act, of_actor, starts_from_rest
 
@@ -61,6 +61,8 @@ class VehicleFacts:
     meant: Maneuver | None = None
     """The turn that it meant to make, where told; `maneuver` is what it did."""
     from_stop: bool = False
+    straddles: Hand | None = None
+    """The hand on which the lane lies over whose line it stands."""
     """Whether it had just started from a stop."""
     faces: bool = False
     """Whether the told heading is the facing: a vehicle that backs then goes the other way."""
@@ -101,8 +103,11 @@ class CrashFacts:
     @property
     def driven(self) -> Courses:
         """The courses as they are planned: with the start from rest of the vehicles that are read so."""
-        starts = {v.id for v in self.vehicles if v.from_stop}
-        told = {who: replace(self.courses.get(who, CourseTold()), from_rest=True) for who in starts}
+        acts = {v.id: (v.from_stop, v.straddles) for v in self.vehicles if v.from_stop or v.straddles}
+        told = {
+            who: replace(self.courses.get(who, CourseTold()), from_rest=starts, straddles=over)
+            for who, (starts, over) in acts.items()
+        }
         return {**self.courses, **told, **self._departing(told)}
 
     def _departing(self, courses: Courses) -> Courses:
@@ -154,6 +159,7 @@ def _vehicle(
         to_lane=motion.to_lane, speed_mph=None if over else inferred.speeds.get(v.id),
         trailer=v.trailer, origin=motion.origin, target=motion.target,
         meant=meant.maneuver if meant else None, from_stop=from_stop,
+        straddles=motion.straddles if inferred.maneuvers[v.id] in ("stopped", "parked") else None,
         faces=_faces(motion, inferred.headings.get(v.id)),
     )  # fmt: skip
 

@@ -78,6 +78,8 @@ class CourseTold:
 
     from_rest: bool = False
     """Stands, then moves on into its first contact."""
+    straddles: Hand | None = None
+    """The hand on which the lane lies over whose line it stands at its first contact."""
     brakes: bool = False
     """Before its first contact."""
     steers: Steering | None = None

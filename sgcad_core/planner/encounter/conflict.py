@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
-from sgcad_core.planner.actor_plan import Role, is_standing, speed_there
+from sgcad_core.planner.actor_plan import Role, is_beside, is_standing, speed_there
 from sgcad_core.planner.encounter.maneuver_choices import UNTOLD
 from sgcad_core.planner.encounter.meeting_place import TURNING, Place, meeting_places, preferred_station
 from sgcad_core.planner.encounter.motion_options import (
@@ -24,10 +24,10 @@ from sgcad_core.planner.encounter.motion_options import (
     steeply,
     turned,
 )
-from sgcad_core.planner.encounter.pairing import Encounter, Stage, Ways, cannot, search
+from sgcad_core.planner.encounter.pairing import GOOD, Encounter, Stage, Ways, cannot, search
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.box_angles import ASKEW
-from sgcad_core.planner.lines.crossing import implied_crossings
+from sgcad_core.planner.lines.crossing import end_meets_flank, implied_crossings
 from sgcad_core.planner.lines.departures import departs, departure_sides, departure_station, side_of
 from sgcad_core.planner.lines.told_moves import with_room
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
@@ -44,8 +44,10 @@ _LAST_TRIES = 90
 """Combinations tried with boxes that slide against their direction, since no driving brings the sides together."""
 _ONE_TURNS = 24
 """Combinations tried in which only one of the two turns its side to the other."""
-_SLIGHT_RAD, _SLIGHTLY = math.radians(20.0), 4
+_SLIGHT_RAD, _SLIGHTLY = math.radians(25.0), 8
 """Angle at which a standing vehicle is still in line with the others, and the number of such options."""
+_SLIGHT = 60
+"""Combinations tried with a standing vehicle that is turned so, where an end is told to meet a flank."""
 _TURNING = 40
 """Combinations tried with other lines of a turn."""
 
@@ -118,7 +120,11 @@ class Conflicts:
             slight = both(_slightly_askew)
             yield Stage((steep[0], slight[1]), _TRIES[0])
             yield Stage((slight[0], steep[1]), _TRIES[0])
-        yield Stage(both(options), _TRIES[0])
+        askew = _may_stand_askew(a) or _may_stand_askew(b)
+        yield Stage(both(options), _TRIES[0], _TOLD_ENOUGH if askew else GOOD)
+        if askew:
+            slight, told = both(_slightly_askew), both(_as_told)
+            yield Stage((slight[0] or told[0], slight[1] or told[1]), _SLIGHT)
         if a.actor.maneuver in TURNING or b.actor.maneuver in TURNING:
             yield Stage(both(turned), _TURNING)
         facing = both(aimed)
@@ -201,6 +207,13 @@ def _unturned(role: Role) -> list[Option]:
     if is_standing(role):
         return options(role)
     return [option for option in options(role) if not option.twist.angle_rad and not option.drift.note]
+
+
+def _may_stand_askew(role: Role) -> bool:
+    """Whether it stands in the road where an end is told to meet a flank, which takes an angle between the two."""
+    if not is_standing(role) or role.actor.record.thing or not end_meets_flank(role):
+        return False
+    return role.actor.maneuver == "stopped" or not is_beside(role.side)
 
 
 def _slightly_askew(role: Role) -> list[Option]:

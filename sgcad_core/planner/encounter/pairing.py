@@ -15,7 +15,7 @@ from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.out_of_lanes import OUT
 from sgcad_core.records.specs import Area, Contact
 
-_GOOD = 1.95
+GOOD = 1.95
 """Total cost below which no further stages are tried: less than a maneuver that is not visible."""
 _CONTENT = 0.35
 """A contact is accepted at once where its own cost (place, clarity) is below this."""
@@ -43,7 +43,7 @@ class Stage(NamedTuple):
 
     ways: Ways
     most: int
-    enough: float = _GOOD
+    enough: float = GOOD
 
 
 Known = dict[tuple[Option, Option], Meeting | None]

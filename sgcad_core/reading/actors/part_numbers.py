@@ -125,7 +125,8 @@ class _Rest(Numbering):
     def _known(self, phrase: Phrase) -> Actor | None:
         known = super()._known(phrase)
         match = phrase.match
-        beside = not match["automated"] and rule("references.elsewhere").match(match.string, match.end())
+        named = match["automated"] or _of_company(match)  # "struck the Acme vehicle from the rear" tells no place of it
+        beside = not named and rule("references.elsewhere").match(match.string, match.end())
         if known and known.subject and beside:
             known = None  # "the vehicle behind" is not the numbered one itself
         new = known is not None and not known.subject and not known.at and phrase.order is None

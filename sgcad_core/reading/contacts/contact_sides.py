@@ -168,8 +168,13 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
 
 
 def _passed_by(mine: Zone, yours: Zone | None, turn: float) -> bool:
-    """Whether the flank of the other one goes along a corner, in one direction."""
-    return turn == 0 and yours in OPPOSITE_HAND and mine.split("/")[1] == OPPOSITE_HAND[yours]
+    """Whether the flank of the other one goes along a front corner, in one direction.
+
+    A rear corner of one that stands is its end to those who fill in forms: so in 75 of 75 reports of automated
+    vehicles (to learn from) that were passed on that hand, the flank in 44.
+    """
+    end, hand = mine.split("/")
+    return end == "front" and turn == 0 and yours in OPPOSITE_HAND and hand == OPPOSITE_HAND[yours]
 
 
 def _beside(mine: Zone | None, yours: Zone | None, turn: float) -> bool:

@@ -33,6 +33,9 @@ class Hypothesis(NamedTuple):
     """Whether the text is silent on what differs, so that nothing told gives way."""
     corner: bool = False
     """Whether it is the other side of a corner in a report without vehicle numbers: the words fit both."""
+    eases: bool = False
+    """Whether it is, there, the end of that corner, or the flank of a front corner that a told flank touches: those who
+    fill in forms name both."""
     either: bool = False
     """Whether it is the other side of a told corner in any report."""
     heading: bool = False
@@ -61,7 +64,15 @@ def _sides(facts: CrashFacts, first: ContactFacts) -> Iterator[Hypothesis]:
                 words = f"the {side} of {getattr(first, role)} instead of the {now}"
                 corner = facts.unnumbered and len(may) == 2
                 either = len(may) == 2
-                yield Hypothesis(_with_first(facts, other), words, price, len(may) == len(AREAS), corner, either)
+                brushed = now == "front" and _told_flank(first, "struck" if role == "striker" else "striker")
+                eases = corner and (side in ("front", "back") or brushed)
+                yield Hypothesis(_with_first(facts, other), words, price, len(may) == len(AREAS), corner, eases, either)
+
+
+def _told_flank(first: ContactFacts, role: str) -> bool:
+    """Whether a flank is told of one of the two."""
+    may = getattr(first, f"{role}_may")
+    return len(may) == 1 and may[0] in ("left", "right")
 
 
 def _guesses(facts: CrashFacts, pair: list[VehicleFacts]) -> Iterator[Hypothesis]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from sgcad_core.kinds import ALLEY, DRIVEWAY, RAMP
+from sgcad_core.kinds import ALLEY, CHANGES, DRIVEWAY, RAMP
 from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.language import of_role, rule, values
 from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
@@ -210,6 +210,37 @@ def _lane_word(m: re.Match[str]) -> str:
     if word in ("middle", "center"):
         return "middle"
     return "left" if word in _LEFT_WORDS else "right"
+
+
+_FROM_RIGHT = {"right_turn": 0, "right": 1, "middle": 10, "left": 20, "left_turn": 21, "center_turn": 22}
+"""Places of lanes by their words, from the right curb; those that are counted from the left lie before the leftmost."""
+
+
+def read_straddle(motion: VehicleMotion, text: str, from_median: bool = False) -> None:
+    """Sets the hand on which the other one of its two lanes lies of a vehicle that stands over a line: away from its
+    own lane, or the way in which it changed lanes."""
+    told = rule("surroundings.straddles").search(text)
+    if told is None or motion.straddles:
+        return
+    lanes = [m for name in ("one", "two") if (m := _LANE.search(told[name]))]
+    places = [_place_across(_counted(m, from_median), m) for m in lanes]
+    own = _place_across(motion.lane, motion.lane_word) if motion.lane or motion.lane_word else None
+    hands = {cue.kind.removeprefix("lane_change_") for cue in motion.cues if cue.kind in CHANGES}
+    if len(places) == 2 and own in places and places[0] != places[1]:
+        other = next(place for place in places if place != own)
+        motion.straddles = "left" if other > own else "right"
+    elif len(hands) == 1:
+        motion.straddles = "left" if hands == {"left"} else "right"
+    if motion.straddles:
+        motion.read("straddles", told[0], "surroundings.straddles")
+
+
+def _place_across(number: int | None, word: re.Match[str] | str | None) -> int:
+    """Where a lane lies across its direction, from the right curb."""
+    if number is not None:
+        return number if number > 0 else _FROM_RIGHT["left"] + 1 + number
+    name = word if isinstance(word, str) else _lane_word(word) if word is not None else "right"
+    return _FROM_RIGHT[name]
 
 
 _ORIGIN = rule("surroundings.origin")

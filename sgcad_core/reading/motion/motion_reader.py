@@ -19,6 +19,7 @@ from sgcad_core.reading.motion.heading_lane_cues import (
     read_lane_change,
     read_origin_and_target,
     read_relations,
+    read_straddle,
 )
 from sgcad_core.reading.motion.maneuver_cues import read_maneuver_cues
 from sgcad_core.reading.motion.motion_record import ManeuverCue, VehicleMotion
@@ -127,6 +128,7 @@ def _read(
     read_relations(motion, before_hit, weight, vehicle, roster)
     if segment.role != "rest":
         read_lane(motion, before_hit, from_median)
+        read_straddle(motion, before_hit, from_median)
         read_lane_change(motion, before_hit, from_median)
         read_origin_and_target(motion, before_hit, after)
 

@@ -74,6 +74,8 @@ class VehicleMotion:
     lane_word: str | None = None
     to_lane: int | str | None = None
     """The lane into which it changes, as `lane` or `lane_word`."""
+    straddles: Literal["left", "right"] | None = None
+    """The hand on which the lane lies over whose line it stands."""
     speeds_mph: list[WeightedValue] = field(default_factory=list)
     origin: Access | None = None
     target: Access | None = None

@@ -15,16 +15,16 @@ from sgcad_core.reading.inference.inference_state import (
     bend_deg,
     end_of,
     is_sideswipe,
+    side_met,
 )
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.maneuvers import INTO_LANE_OF
 from sgcad_core.reading.motion.motion_record import DRIVES
+from sgcad_core.reading.text.area_phrases import Zone
 from sgcad_core.records.specs import Area
 
 QUARTERS = (0, 90, 180, 270)
 
-_TOLD, _IN_LINE = 0.6, 1.0
-"""Shares of the weight of a told relation; one behind the other drive one way whatever touches."""
 _STREET = 2.0
 """That both are told by name to drive on one street, or on two."""
 
@@ -63,7 +63,7 @@ def _add_relations(score: dict[int, float], crash: CrashTold, a: str, b: str) ->
         for weight, relation, other, words in crash.motions[me].relations:
             if other == you and not (words == "behind" and _on_foot(crash, a, b)):  # "ran from behind V2"
                 for q in {"same": (0,), "opposite": (180,), "crossing": (90, 270)}[relation]:
-                    score[q] += (_IN_LINE if words in ("behind", "ahead") else _TOLD) * weight
+                    score[q] += weight  # more than what the sides that touched suggest
     on = [crash.motions[v].street for v in (a, b)]
     if all(on):
         for q in (0, 180) if on[0] == on[1] else (90, 270):
@@ -119,7 +119,7 @@ def _add_kinds(score: dict[int, float], crash: CrashTold, inferred: CrashInferre
 def _add_contact(score: dict[int, float], inferred: CrashInferred, a: str, b: str, mention: ContactMention) -> None:
     """What the sides that touched say about the headings before any turn."""
     area = {mention.actor: mention.actor_area, mention.other: mention.other_area}
-    one, two = end_of(area[a]), end_of(area[b])
+    one, two = _met_sides(inferred, (a, b), (area[a], area[b]))
     leads = [inferred.maneuvers[v] == "backing" and zone == "back" for v, zone in ((a, one), (b, two))]
     expected = contact_turn("front" if leads[0] else one, "front" if leads[1] else two)
     if expected is None:
@@ -128,6 +128,15 @@ def _add_contact(score: dict[int, float], inferred: CrashInferred, a: str, b: st
     bent = expected + bend_deg(inferred.maneuvers[a], one, two) - bend_deg(inferred.maneuvers[b], two, one)
     for q in QUARTERS:
         score[q] += (1.5 if one and two else 1.2) * (1 - apart(q, bent) / 90)
+
+
+def _met_sides(
+    inferred: CrashInferred, pair: tuple[str, str], zones: tuple[Zone | None, Zone | None]
+) -> tuple[Area | None, Area | None]:
+    """The sides of two that touch, corners decided: two rear corners touch with their flanks where neither backs."""
+    ends = end_of(zones[0]), end_of(zones[1])
+    rear = ends == ("back", "back") and not any(inferred.maneuvers[v] == "backing" for v in pair)
+    return (side_met(zones[0]), side_met(zones[1])) if rear else ends
 
 
 def contact_turn(area_a: Area | None, area_b: Area | None) -> float | None:

@@ -149,6 +149,8 @@ def _motion(builder: FactBuilder, v: VehicleFacts, read: StageResults) -> Iterat
     if v.from_stop:
         stop = motion.cue("stopped") or motion.cue("parked")
         yield builder.stated(f"{at}.from_stop", True, stop.source if stop else None)
+    if v.straddles:
+        yield builder.stated(f"{at}.straddles", v.straddles, motion.sources.get("straddles"))
 
 
 def _heading(builder: FactBuilder, v: VehicleFacts, read: StageResults) -> Iterator[Fact]:

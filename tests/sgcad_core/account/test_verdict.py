@@ -11,6 +11,7 @@ import pytest
 from sgcad_core.account.notes import Note
 from sgcad_core.account.records import Disagreement, Item
 from sgcad_core.account.unread_clauses import unread_clauses
+from sgcad_core.account.unread_text import _deeds as missed_deeds
 from sgcad_core.account.verdict import (
     contradictions,
     guesses,
@@ -70,6 +71,40 @@ def test_the_sentence_counts_and_names() -> None:
         said == "lacks 1 of 2 things told (lacks thing); unread (unread thing): 1 of 2 things told are there, 1 assumed"
     )
     assert sentence_of("whole", [item("has")], ()).startswith("right as far as told: 1 of 1")
+
+
+PASSED = (
+    "The AV was eastbound and stopped. A van was westbound and passed the AV. The left side of the van struck the left "
+    "side of the AV."
+)
+
+
+def deeds_missed(text: str, headings: dict[str, float]) -> list[str]:
+    """The deeds of a text that a case lacks in which vehicles begin at some headings, radians."""
+    case = made(text)
+    case.tracks = {
+        who: Trajectory(actor=who, t_s=np.zeros(1), x_m=np.zeros(1), y_m=np.zeros(1), heading_rad=np.array([heading]),
+                        speed_mps=np.zeros(1))
+        for who, heading in headings.items()
+    }  # fmt: skip
+    return [found.value for one in case.reading.sentences for found in missed_deeds(case, one)]
+
+
+def test_one_that_goes_by_the_other_way_has_passed() -> None:
+    assert deeds_missed(PASSED, {"V1": 0.0, "V2": np.pi}) == []
+    assert deeds_missed(PASSED, {"V1": 0.0, "V2": 0.0})
+
+
+def test_one_that_stands_over_the_line_has_begun_its_change_of_lanes() -> None:
+    text = (
+        "The AV was northbound in the right lane and began to change lanes to the left, then stopped, partially in the "
+        "right lane and partially in the left lane. A truck struck the left side of the AV."
+    )
+    over = deeds_missed(text, {"V1": np.pi / 2, "V2": np.pi / 2})
+    within = deeds_missed(text.replace("partially in the right lane and partially in the left lane", "in it"),
+                          {"V1": np.pi / 2, "V2": np.pi / 2})  # fmt: skip
+    assert over == []
+    assert within
 
 
 # ------------------------------------------------------------------ what it rests on

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from sgcad_core.case.records import Scenario
@@ -109,12 +111,22 @@ def test_a_contact_that_does_not_come_about_is_the_worst_doubt() -> None:
 
 
 UNNUMBERED = "The AV was eastbound. A van was southbound. The front of the AV struck the right front corner of the van."
+REAR = (
+    "The AV was eastbound and stopped. A van was eastbound and overtook the AV. The right side of the van struck the "
+    "left rear corner of the AV."
+)
 
 
-def unnumbered_other_side(facts: CrashFacts) -> BehaviorSpec:
-    if facts.contacts[0].struck_area == read(UNNUMBERED).crash.contacts[0].struck_area:
-        raise InvalidOutput("this reading cannot be placed")
-    return crossing()
+def of_other_side(text: str) -> Callable[[CrashFacts], BehaviorSpec]:
+    """Places the readings of a text in which the other side of the struck vehicle touches, and no other ones."""
+    first = read(text).crash.contacts[0].struck_area
+
+    def placed(facts: CrashFacts) -> BehaviorSpec:
+        if facts.contacts[0].struck_area == first:
+            raise InvalidOutput("this reading cannot be placed")
+        return crossing()
+
+    return placed
 
 
 def awry(by_rad: float) -> Scenario:
@@ -125,11 +137,19 @@ def awry(by_rad: float) -> Scenario:
     return met.model_copy(update={"planned": (first.model_copy(update={"heading_rad": headings}), *met.planned[1:])})
 
 
-def test_of_a_report_without_numbers_a_corner_gives_way_where_its_first_side_hides_what_is_told() -> None:
+def test_of_a_report_without_numbers_the_flank_of_a_corner_gives_way_to_its_end_in_odd_driving() -> None:
     facts = read(UNNUMBERED).crash
-    assert least_doubted(facts, unnumbered_other_side, GRAPH, awry(0.0)).facts == facts
-    least = least_doubted(facts, unnumbered_other_side, GRAPH, awry(4.0))
-    assert least.facts.contacts[0].struck_area != facts.contacts[0].struck_area
+    assert facts.contacts[0].struck_area == "right"
+    least = least_doubted(facts, of_other_side(UNNUMBERED), GRAPH, awry(0.0))
+    assert least.facts.contacts[0].struck_area == "front"
+
+
+def test_of_a_report_without_numbers_a_rear_end_gives_way_only_where_it_hides_what_is_told() -> None:
+    facts = read(REAR).crash
+    assert facts.contacts[0].struck_area == "back"
+    assert least_doubted(facts, of_other_side(REAR), GRAPH, awry(0.0)).facts == facts
+    least = least_doubted(facts, of_other_side(REAR), GRAPH, awry(4.0))
+    assert least.facts.contacts[0].struck_area == "left"
 
 
 def test_where_nothing_else_meets_somebody_who_slows_drives_on() -> None:

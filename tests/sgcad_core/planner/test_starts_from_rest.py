@@ -70,6 +70,20 @@ def test_corners_are_cut_behind_the_line_where_one_started_from_rest() -> None:
     assert min(begins) > start_m(role)
 
 
+def test_one_that_starts_behind_a_standing_one_stood_behind_it_and_rolls_into_it() -> None:
+    behavior = BehaviorSpec(
+        actors=(actor("V1", "stopped", "W"), actor("V2", "straight", "W", "E")),
+        contacts=(contact("V2 front V1 back"),),
+    )
+    made = plan(behavior, network("four_leg"), courses=_FROM_REST)
+    speed = track(made, "V2").speed_mps[: at_contact(made)]
+    gap_m = abs(track(made, "V2").x_m[0] - track(made, "V1").x_m[0]) - size_m(behavior.actors[0])[0]
+    assert made.realised
+    assert int((speed < 0.1).sum()) * 0.05 >= WAITS_S - 0.1
+    assert 1.0 < gap_m < 8.0
+    assert 1.0 < speed[-1] < 5.0
+
+
 def test_one_that_backs_into_a_parked_vehicle_was_in_the_row_of_the_parked_ones() -> None:
     behavior = BehaviorSpec(
         actors=(actor("V1", "parked", "S"), actor("V2", "backing", "S")), contacts=(contact("V2 back V1 front"),)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from sgcad_core.execution.plan_score import ODD_FROM
 from sgcad_core.planner import Plan, plan
+from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
 from sgcad_core.roads.lane_graph import LaneGraph
 from tests.sgcad_core.planner.crash_scenes import network
@@ -54,7 +55,6 @@ def test_a_front_that_crosses_the_centerline_meets_a_flank_and_only_it_turns(
 
 @pytest.mark.parametrize(("maneuver", "lanes", "areas"), [
     ("lane_change_right", (2, 1), ("front", "left")), ("lane_change_left", (1, 2), ("front", "right")),
-    ("lane_change_right", (2, 2), ("left", "back")),
 ])  # fmt: skip
 def test_one_that_stands_is_met_where_it_stands(maneuver: str, lanes: tuple[int, int], areas: tuple[str, str]) -> None:
     made = _made(
@@ -69,6 +69,52 @@ def test_one_that_stands_is_met_where_it_stands(maneuver: str, lanes: tuple[int,
         math.degrees(standing.heading_rad[0]) % 180
     ) == pytest.approx(180, abs=1)
     assert made.oddity < ODD_FROM
+
+
+@pytest.mark.parametrize("kind", ["car", "bus"])
+def test_a_rear_that_is_brushed_by_one_that_swings_out_stands_slightly_askew_at_most(kind: str) -> None:
+    made = _made(
+        "straight_wide",
+        {"id": "V1", "road": "E", "lane": 1, "kind": kind, "maneuver": "overtaking"},
+        {"id": "V2", "road": "E", "lane": 1, "maneuver": "stopped"},
+        ("right", "back"),
+    )
+    assert made.realised
+    standing = next(t for t in made.trajectories if t.actor == "V2")
+    off = math.remainder(float(standing.heading_rad[0]), math.pi)
+    assert abs(math.degrees(off)) < 25.0
+    assert _turned_deg(made, "V1") > 5.0
+    assert made.oddity < ODD_FROM
+
+
+def test_one_that_comes_back_behind_one_that_it_passed_the_other_way_is_not_odd() -> None:
+    made = _made(
+        "straight", {"id": "V1", "road": "N"}, {"id": "V2", "road": "S", "maneuver": "stopped"}, ("left", "back")
+    )
+    assert made.realised
+    assert made.oddity < ODD_FROM
+
+
+@pytest.mark.parametrize(("hand", "sign"), [("left", 1.0), ("right", -1.0)])
+def test_one_that_is_told_to_stand_over_a_line_stands_over_it(hand: str, sign: float) -> None:
+    lane = 1 if hand == "left" else 2
+    base = {"kind": "car", "direction": "forward", "road": "E", "lane": lane}
+    actors = [
+        Actor.model_validate(base | {"id": "V1", "maneuver": "straight"}),
+        Actor.model_validate(base | {"id": "V2", "maneuver": "stopped"}),
+    ]
+    contact = Contact.model_validate({"striker": "V1", "striker_area": "front", "struck": "V2", "struck_area": "back"})
+    behavior = BehaviorSpec(actors=tuple(actors), contacts=(contact,))
+    places = []
+    for told in ({}, {"V2": CourseTold(straddles=hand)}):  # type: ignore[arg-type]
+        made = plan(behavior, network("straight_wide"), courses=told)
+        assert made.realised
+        places.append(next(t for t in made.trajectories if t.actor == "V2"))
+    way = float(places[0].heading_rad[0])
+    left = -math.sin(way) * (places[1].x_m[0] - places[0].x_m[0]) + math.cos(way) * (
+        places[1].y_m[0] - places[0].y_m[0]
+    )
+    assert 0.9 < sign * left < 2.3
 
 
 def test_a_lane_that_is_left_though_nobody_tells_it_is_noted() -> None:

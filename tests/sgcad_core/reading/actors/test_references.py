@@ -189,3 +189,12 @@ def test_driver_b_hit_the_truck_of_driver_a() -> None:
 def test_a_numbered_bicycle_is_one() -> None:
     facts = read("V1 was northbound. V2, a bicycle, was southbound. V2 struck the front of V1.").crash
     assert [v.kind for v in facts.vehicles] == ["car", "bicycle"]
+
+
+def test_a_vehicle_of_a_company_that_is_struck_from_the_rear_is_the_one_named_before() -> None:
+    crash = read(
+        "The Acme vehicle was stopped at a red light on Oak Avenue. Vehicle 2 struck the Acme vehicle from the rear."
+    ).crash
+    first = crash.contacts[0]
+    assert (first.striker, first.struck) == ("V2", "V1")
+    assert [v.id for v in crash.vehicles] == ["V1", "V2"]

@@ -87,12 +87,12 @@ def first_sides(text: str) -> tuple[str, str]:
     return first.striker_area, first.struck_area
 
 
-def test_a_corner_that_stands_is_passed_with_a_flank() -> None:
+def test_a_rear_corner_that_stands_and_is_passed_is_its_end() -> None:
     text = (
         "The AV was stopped eastbound when a car that had been behind the AV began to maneuver around the AV on its "
         "left. The passenger side of the car made contact with the rear driver side of the AV."
     )
-    assert first_sides(text) == ("right", "left")
+    assert first_sides(text) == ("right", "back")
 
 
 def test_corners_of_two_that_pass_each_other_touch_with_their_flanks() -> None:
