@@ -120,8 +120,9 @@ def _read(one: _CourseReader, segment: Segment, impact: int, event: str, *, late
         behind = segment.text
     if event and segment.number == impact and (at := segment.text.lower().find(event)) >= 0:
         before, behind = segment.text[:at], segment.text
-    _read_evasion(one, segment, before)
-    if segment.role not in RETOLD and segment.number <= impact and not (late and segment.number == impact):
+    early = segment.number <= impact and not (late and segment.number == impact)
+    _read_evasion(one, segment, before, early=early)
+    if segment.role not in RETOLD and early:
         _read_departure(one, segment, before)
     if behind:
         _read_spin(one, segment, behind)
@@ -129,14 +130,16 @@ def _read(one: _CourseReader, segment: Segment, impact: int, event: str, *, late
 
 
 # ------------------------------------------------------------------ before the contact
-def _read_evasion(one: _CourseReader, segment: Segment, text: str) -> None:
+def _read_evasion(one: _CourseReader, segment: Segment, text: str, *, early: bool) -> None:
+    """Evasion and loss of control before a contact; one that turns is out of control where that is told `early`, before
+    the first contact, which else turned it."""
     none = rule("course_evasion.none").search(text)
     if none:
         one.add("no_evasion", True, Source(segment.number, none[0], "course_evasion.none"))
     lost = rule("meeting.lost").search(text)
     if lost and segment.role not in RETOLD:
         one.add("lost_control", True, Source(segment.number, lost[0], "meeting.lost"))
-    if turned := rule("course_rest.turned").search(text):
+    if early and (turned := rule("course_rest.turned").search(text)):
         one.add("lost_control", True, Source(segment.number, turned[0], "course_rest.turned"))
     for found in _done(text, of_role("braking")):
         one.add("brakes", True, Source(segment.number, found[1][0], found[0].id))

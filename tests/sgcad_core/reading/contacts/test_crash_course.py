@@ -193,3 +193,16 @@ def test_further_words_for_a_rest(words: str, rest: RestTold) -> None:
 
 def test_a_told_distance_goes_before_the_place_of_the_impact() -> None:
     assert course(f"{HIT}Vehicle #1 came to rest 10 m from the point of impact.").rest.distance_m == 10.0
+
+
+@pytest.mark.parametrize(("told", "lost"), [
+    ("V1 rotated clockwise across the centerline and struck the front of V2 with its right side.", True),
+    ("V1 struck V2, and V1 rotated clockwise and its left side contacted V3.", False),
+    ("The front of V2 contacted V1, which caused V1 to rotate clockwise where its rear contacted V3.", False),
+    ("The front of V1 struck the left side of V2. V1 then rotated clockwise, striking V2 with its left side.", False),
+    ("The front of V1 struck the left side of V2. Following this impact V1 spun and contacted V3.", False),
+    ("V1 struck V2. V1 lost control and struck V3.", True),
+])  # fmt: skip
+def test_one_that_turns_by_the_first_contact_did_not_lose_control(told: str, lost: bool) -> None:
+    crash = read(f"V1 was northbound. V2 was southbound on the same road. V3 was behind V2. {told}").crash
+    assert crash.courses.get("V1", CourseTold()).lost_control is lost
