@@ -7,6 +7,7 @@ than the surface allows; a report that tells no loss of control seldom means tha
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import ClassVar, Literal
 
@@ -14,6 +15,9 @@ from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario
 from sgcad_core.interfaces import Validator
 from sgcad_core.metrics.drivability import deepest_overlap, driving_peaks, first_touches
 from sgcad_core.records.specs import Actor, BehaviorSpec, size_m
+
+_MOVED_M = 0.1
+"""A thing that ends further from where it stood was knocked down."""
 
 
 class Drivable(Validator):
@@ -40,12 +44,23 @@ class Drivable(Validator):
 
     def _at_rest(self, scenario: Scenario, behavior: BehaviorSpec) -> list[Finding]:
         """At most one finding: boxes that overlap after all have come to rest."""
-        depth, pair = deepest_overlap(scenario.planned, {a.id: size_m(a) for a in behavior.actors}, at_rest=True)
+        down = _knocked_down(scenario, behavior)  # a vehicle may lie over these
+        left = [motion for motion in scenario.planned if motion.actor not in down]
+        depth, pair = deepest_overlap(left, {a.id: size_m(a) for a in behavior.actors}, at_rest=True)
         what, remedy = "two boxes overlap at rest", "let them push each other apart"
         found = Finding(
             source="drivable", severity=self.odd, what=what, where=pair, value=f"{depth:.2f} m", remedy=remedy
         )
         return [found] if depth > 0 else []
+
+
+def _knocked_down(scenario: Scenario, behavior: BehaviorSpec) -> set[str]:
+    """Things that gave way: they do not stay where they stood."""
+    yielding = {actor.id for actor in behavior.actors if actor.record.thing and not actor.firm}
+    return {
+        motion.actor for motion in scenario.planned if motion.actor in yielding
+        and math.dist(motion.pose[0, :2], motion.pose[-1, :2]) > _MOVED_M
+    }  # fmt: skip
 
 
 def _excesses(scenario: Scenario, behavior: BehaviorSpec) -> Iterator[tuple[Actor, tuple[str, ...]]]:

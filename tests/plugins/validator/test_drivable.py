@@ -118,3 +118,25 @@ def test_boxes_that_come_to_rest_in_each_other_are_doubted_whatever_is_told() ->
     moved = scenario.model_copy(update={"planned": (first, second.model_copy(update={"x_m": x, "y_m": y}))})
     for text in (CROSSED, SPUN):
         assert [(f.what, f.where) for f in judged(moved, text)] == [("two boxes overlap at rest", "V1 and V2")]
+
+
+@pytest.mark.parametrize(("firm", "falls", "doubted"), [(False, True, False), (False, False, True), (True, True, True)])
+def test_a_vehicle_may_lie_over_what_it_knocked_down(firm: bool, falls: bool, doubted: bool) -> None:
+    scenario = crossed(("front", "left"))
+    behavior, rest = scenario.behavior, scenario.planned[0].pose[-1]
+    assert behavior is not None
+    bush = Actor.model_validate({
+        "id": "O1", "kind": "object", "road": "S", "direction": "forward", "maneuver": "stopped", "firm": firm,
+        "length_m": 1.0, "width_m": 1.0,
+    })  # fmt: skip
+    t = scenario.planned[0].t_s
+    x = np.full(len(t), rest[0])
+    x[0] += 20.0 if falls else 0.0
+    y, still = np.full(len(t), rest[1]), np.zeros(len(t))
+    lies = Trajectory(actor="O1", t_s=t, x_m=x, y_m=y, heading_rad=still, speed_mps=still)
+    with_bush = scenario.model_copy(update={
+        "planned": (*scenario.planned, lies),
+        "behavior": behavior.model_copy(update={"actors": (*behavior.actors, bush)}),
+    })  # fmt: skip
+    found = [f.where for f in judged(with_bush) if f.what == "two boxes overlap at rest"]
+    assert found == (["V1 and O1"] if doubted else [])
