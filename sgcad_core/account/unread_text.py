@@ -195,7 +195,7 @@ def _ground(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     words = _met(made)
     drawn = {strip.kind for strip in roadsides(made.graph)}
     for kind in of_role("ground_beside"):
-        match = kind.search(sentence.text)
+        match = kind.search(sentence.text) if kind.yields["ground"] != "curb" else None  # one parks along it, too
         if match and kind.yields["ground"] not in drawn and not any(match[0].lower() in word for word in words):
             yield _lacks(sentence, "ground", match[0].lower(), f"{match[0]!r} is named", "none is drawn")
     for match in rule("account.ground").finditer(sentence.text):

@@ -227,6 +227,7 @@ def test_a_whole_report_leaves_nothing_unread(made):
     ("V1 stopped for pedestrians when V2 struck it.", "text.further", "pedestrian"),
     ("V1 was northbound when it went into the ditch.", "text.ground", "ditch"),
     ("V1 was northbound beside a retaining wall.", "text.ground", "retaining wall"),
+    ("V1 was parked along the north curb.", "text.ground", None),
     ("V1 departed the road and came to rest in a driveway.", "text.ground", "driveway"),
     ("The rollover was preceded by an impact to a fire hydrant.", "text.struck", "hydrant"),
     ("V1 was northbound. V2 was southbound.", "text.ground", None),
