@@ -25,9 +25,9 @@ MARGIN_M, LEAST_M, MOST_M = 14.0, 25.0, 75.0
 GHOST_S = 1.0
 """Time between two drawn boxes of an actor; earlier ones are paler."""
 CONE = "#ff7a1a"
-GROUND_HATCH = {"curb": "", "ditch": "xx", "embankment": "\\\\\\"}
-"""How ground beside roads is hatched."""
-GROUND_COLORS, GROUND_LINE = {"curb": "#8f918b", "ditch": "#cfc6ae", "embankment": "#dde3cf"}, "#a3a890"
+BESIDE = {"curb": ("#8f918b", ""), "ditch": ("#cfc6ae", "xx"), "embankment": ("#dde3cf", "\\\\\\")}
+"""Color and hatch of ground beside roads."""
+BESIDE_LINE = "#a3a890"
 GROUND, ASPHALT, WHITE, YELLOW, RED = "#eef0ea", "#5b6067", "#f4f4f0", "#e8b93c", "#d7263d"
 LINES = {
     "edge": (WHITE, 0.9, "-"),
@@ -93,13 +93,12 @@ def draw_network(axes: Axes, drawing: Drawing, points_per_m: float) -> None:
     axes.add_collection(
         PolyCollection(drawing.gores, facecolors=ASPHALT, edgecolors=WHITE, hatch="///", linewidths=0.8, zorder=1.5)
     )
-    for kind, hatch in GROUND_HATCH.items():
+    for kind, (color, hatch) in BESIDE.items():
         areas = [corners for told, corners in drawing.grounds if told == kind]
-        axes.add_collection(
-            PolyCollection(
-                areas, facecolors=GROUND_COLORS[kind], edgecolors=GROUND_LINE, hatch=hatch, linewidths=0.4, zorder=0.8
-            )
+        ground = PolyCollection(
+            areas, facecolors=color, edgecolors=BESIDE_LINE, hatch=hatch, linewidths=0.4, zorder=0.8
         )
+        axes.add_collection(ground)
     if len(drawing.cones):
         size = max(CONE_M * points_per_m, 2.0)
         axes.plot(*drawing.cones.T, linestyle="none", marker="o", markersize=size, color=CONE, zorder=2.5)

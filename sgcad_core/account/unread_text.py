@@ -191,16 +191,20 @@ def _ground(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     }
     for wording in (rule("account.median"), rule("account.drive")):
         if not there[wording.id] and (match := wording.search(sentence.text)):
-            yield _lacks(sentence, "ground", match[0].lower(), f"{match[0]!r} is named", "none is drawn")
+            yield _not_drawn(sentence, match[0])
     words = _met(made)
     drawn = {strip.kind for strip in roadsides(made.graph)}
     for kind in of_role("ground_beside"):
         match = kind.search(sentence.text) if kind.yields["ground"] != "curb" else None  # one parks along it, too
         if match and kind.yields["ground"] not in drawn and not any(match[0].lower() in word for word in words):
-            yield _lacks(sentence, "ground", match[0].lower(), f"{match[0]!r} is named", "none is drawn")
+            yield _not_drawn(sentence, match[0])
     for match in rule("account.ground").finditer(sentence.text):
         if not any(match[0].lower() in word for word in words):
-            yield _lacks(sentence, "ground", match[0].lower(), f"{match[0]!r} is named", "none is drawn")
+            yield _not_drawn(sentence, match[0])
+
+
+def _not_drawn(sentence: Sentence, words: str) -> Item:
+    return _lacks(sentence, "ground", words.lower(), f"{words!r} is named", "none is drawn")
 
 
 def _parted(made: ExecutedCase) -> bool:

@@ -67,12 +67,18 @@ def in_stall(role: Role) -> bool:
     return role.course.stalls and role.actor.maneuver == "parked"
 
 
+def needs_angle(role: Role) -> bool:
+    """Whether an end is told to meet a flank, which takes an angle between the two; a parked one keeps its flank in its
+    row."""
+    return end_meets_flank(role) and (role.actor.maneuver == "stopped" or not is_beside(role.side))
+
+
 def askew(role: Role) -> list[Twist]:
     """Straight in its lane, slightly turned, or turned to the other actor; square to the aisle in a stall."""
     if in_stall(role):
         return [Twist(0.0, -math.pi / 2), Twist(0.05, math.pi / 2)]
     small = [Twist(0.2 + abs(a) / 60, math.radians(a), ASKEW) for a in (15, -15, 35, -35)]
-    if end_meets_flank(role) and (role.actor.maneuver == "stopped" or not is_beside(role.side)):
+    if needs_angle(role):
         needed = _NEEDED_ASKEW[: 4 if role.actor.maneuver == "stopped" else 2]  # a row of the parked is straighter
         small += [Twist(cost, math.radians(a), ASKEW) for cost, a in needed]
     return [Twist(0.0), *small, *aiming(role)]

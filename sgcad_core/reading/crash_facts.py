@@ -61,9 +61,9 @@ class VehicleFacts:
     meant: Maneuver | None = None
     """The turn that it meant to make, where told; `maneuver` is what it did."""
     from_stop: bool = False
+    """Whether it had just started from a stop."""
     straddles: Hand | None = None
     """The hand on which the lane lies over whose line it stands."""
-    """Whether it had just started from a stop."""
     faces: bool = False
     """Whether the told heading is the facing: a vehicle that backs then goes the other way."""
 

@@ -36,9 +36,9 @@ Median = Literal["none", "painted", "raised", "grass", "barrier"]
 RoadArea = Literal["", "rural", "town", "motorway"]
 CenterLine = Literal["", "double_yellow", "solid_yellow", "broken_yellow"]
 Beside = Literal["bike_lane", "parking", "shoulder", "sidewalk"]
+"""What lies beside the lanes of a road, in this order from the lanes outwards."""
 Ground = Literal["curb", "ditch", "embankment"]
 """What a vehicle drives over beside the pavement."""
-"""What lies beside the lanes of a road, in this order from the lanes outwards."""
 Light = Literal["day", "dusk", "dawn", "dark", "dark_lit"]
 Weather = Literal["clear", "cloudy", "rain", "snow", "sleet", "fog"]
 Surface = Literal["dry", "wet", "snow", "ice"]

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from sgcad_core.records.specs import RoadLayout
-from sgcad_core.roads.layout import COMPASS, hub_control
+from sgcad_core.roads.layout import bearing_rad, hub_control
 
 _COUNTS = {2: "two", 3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight"}
 _CONTROLS = {
@@ -32,10 +32,7 @@ class JunctionLeg(NamedTuple):
 
 def layout_legs(layout: RoadLayout) -> tuple[JunctionLeg, ...]:
     """The legs of a layout as `describe` takes them."""
-    return tuple(
-        JunctionLeg(math.radians(90 - 45 * COMPASS.index(leg.bearing)), leg.lanes_in, leg.lanes_out)
-        for leg in layout.legs
-    )
+    return tuple(JunctionLeg(bearing_rad(leg.bearing), leg.lanes_in, leg.lanes_out) for leg in layout.legs)
 
 
 def describe_layout(layout: RoadLayout) -> str:

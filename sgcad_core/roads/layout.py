@@ -136,9 +136,13 @@ def _node(name: str, place: tuple[float, float], control: NodeControl = "none") 
     return Node(id=name, x_m=round(place[0], 2), y_m=round(place[1], 2), control=control)
 
 
+def bearing_rad(bearing: Compass, skew_deg: float = 0.0) -> float:
+    """Direction of a compass point, turned clockwise by a skew, radians counter-clockwise from east."""
+    return math.radians(90 - 45 * COMPASS.index(bearing) - skew_deg)
+
+
 def _angle(leg: Leg) -> float:
-    """Direction of a leg, radians counter-clockwise from east."""
-    return math.radians(90 - 45 * COMPASS.index(leg.bearing) - leg.skew_deg)
+    return bearing_rad(leg.bearing, leg.skew_deg)
 
 
 def _path(leg: Leg, legs: Sequence[Leg], rim: Rim | None = None) -> _Path:

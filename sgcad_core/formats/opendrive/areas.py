@@ -18,43 +18,46 @@ from sgcad_core.roads.areas.gores import gores
 from sgcad_core.roads.areas.roadside import roadsides
 from sgcad_core.roads.lane_graph import LaneGraph
 
+_CROSSWALK, _GORE = ("crosswalk", "zebra", "crosswalk"), ("roadMark", "gore", "gore")
 STALL_WIDTH_M = 2.7
 """Of a parking space (9 ft)."""
 
 
-class Crosswalk(NamedTuple):
+class GroundArea(NamedTuple):
     """A crosswalk over a street, or a gore or ground beside one; ids are those of objects.
 
     `corners`: (n, 2) around it, along and to the left of the street's reference line where that ends (`s_m`).
+    `called`: type, subtype and name of the object.
     """
 
     id: str
     road: str
     s_m: float
     corners: Floats
+    called: tuple[str, str, str]
 
 
-def crosswalks_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> tuple[Crosswalk, ...]:
+def crosswalks_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> tuple[GroundArea, ...]:
     """All crosswalks, with the next ids."""
     return tuple(walk for street in roads for walk in _over(street, graph, ids))
 
 
-def gores_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> tuple[Crosswalk, ...]:
+def gores_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> tuple[GroundArea, ...]:
     """The painted gores at ramps, as areas of the streets that the ramps leave or join, with the next ids."""
     by_edge = {edge.id: street for street in roads for edge in street.edges}
     found = []
     for gore in gores(graph):
         if street := by_edge.get(gore.road):
             s_m = street.driven_end(gore.road, at_end=not gore.leaves)
-            found.append(Crosswalk(next(ids), street.id, s_m, _local(street, s_m, gore.corners)))
+            found.append(GroundArea(next(ids), street.id, s_m, _local(street, s_m, gore.corners), _GORE))
     return tuple(found)
 
 
-def grounds_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> tuple[tuple[str, Crosswalk], ...]:
-    """(kind, area) of the ground beside the streets, with the next ids."""
+def grounds_of(graph: LaneGraph, roads: Sequence[Street], ids: Iterator[str]) -> tuple[GroundArea, ...]:
+    """The ground beside the streets, with the next ids."""
     by_edge = {edge.id: street for street in roads for edge in street.edges}
     return tuple(
-        (strip.kind, Crosswalk(next(ids), street.id, 0.0, _local(street, 0.0, strip.corners)))
+        GroundArea(next(ids), street.id, 0.0, _local(street, 0.0, strip.corners), ("none", strip.kind, strip.kind))
         for strip in roadsides(graph) if (street := by_edge.get(strip.edge))
     )  # fmt: skip
 
@@ -113,14 +116,14 @@ def station(street: Street, point: Floats) -> tuple[float, float]:
     return s_m, float((point[1] - y) * math.cos(heading) - (point[0] - x) * math.sin(heading))
 
 
-def _over(street: Street, graph: LaneGraph, ids: Iterator[str]) -> Iterator[Crosswalk]:
+def _over(street: Street, graph: LaneGraph, ids: Iterator[str]) -> Iterator[GroundArea]:
     edges = {edge.id for edge in street.edges}
     for crossing in graph.crossings:
         if edges & set(crossing.edges):
             s_m = street.length_m if crossing.node == street.forward.to_node else 0.0
             half = crossing.width_m / 2
             left, right = (parallel_polyline(crossing.shape, side) for side in (half, -half))
-            yield Crosswalk(next(ids), street.id, s_m, _local(street, s_m, np.vstack((left, right[::-1]))))
+            yield GroundArea(next(ids), street.id, s_m, _local(street, s_m, np.vstack((left, right[::-1]))), _CROSSWALK)
 
 
 def _local(street: Street, s_m: float, points: Floats) -> Floats:

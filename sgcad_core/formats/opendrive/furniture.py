@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from sgcad_core.formats.opendrive.areas import STALL_WIDTH_M, Cone, Crosswalk, Stall
+from sgcad_core.formats.opendrive.areas import STALL_WIDTH_M, Cone, GroundArea, Stall
 from sgcad_core.formats.opendrive.elements import add_child, decimal_text
 from sgcad_core.formats.opendrive.signals import STOP_LINE_M, Signal, StopLine
 from sgcad_core.formats.xml import Element
@@ -19,14 +19,12 @@ CONE_HEIGHT_M = 0.7
 def add_objects(
     road: Element,
     stop_lines: Sequence[StopLine],
-    crosswalks: Sequence[Crosswalk],
+    areas: Sequence[GroundArea],
     stalls: Sequence[Stall],
     cones: Sequence[Cone] = (),
-    gores: Sequence[Crosswalk] = (),
-    grounds: Sequence[tuple[str, Crosswalk]] = (),
 ) -> None:
-    """Stop lines, crosswalks, parking spaces, cones, gores and ground; no <objects> where there are none."""
-    if not (stop_lines or crosswalks or stalls or cones or gores or grounds):
+    """Stop lines, areas, parking spaces and cones; no <objects> where there are none."""
+    if not (stop_lines or areas or stalls or cones):
         return
     objects = add_child(road, "objects")
     for line in stop_lines:
@@ -40,12 +38,8 @@ def add_objects(
             made.set(name, decimal_text(value))
         _validity(made, line.lanes)
 
-    for walk in crosswalks:
-        _add_area(objects, walk, ("crosswalk", "zebra", "crosswalk"))
-    for gore in gores:
-        _add_area(objects, gore, ("roadMark", "gore", "gore"))
-    for kind, ground in grounds:
-        _add_area(objects, ground, ("none", kind, kind))
+    for area in areas:
+        _add_area(objects, area)
     for stall in stalls:
         made = add_child(
             objects, "object", id=stall.id, type="parkingSpace", name="stall", dynamic="no", orientation="none"
@@ -63,20 +57,20 @@ def add_objects(
             made.set(name, decimal_text(value))
 
 
-def _add_area(objects: Element, walk: Crosswalk, called: tuple[str, str, str]) -> None:
-    """An area where the street ends, its corners relative to there; `called`: type, subtype and name.
+def _add_area(objects: Element, area: GroundArea) -> None:
+    """An area where the street ends, its corners relative to there.
 
     A crosswalk lies beyond the street's end, in the junction.
     """
-    kind, subtype, name = called
-    made = add_child(objects, "object", id=walk.id, type=kind, subtype=subtype, name=name, dynamic="no")
+    kind, subtype, name = area.called
+    made = add_child(objects, "object", id=area.id, type=kind, subtype=subtype, name=name, dynamic="no")
     made.set("orientation", "none")
-    _place(made, walk.s_m, 0.0, 0.0)
-    (low_u, low_v), (high_u, high_v) = walk.corners.min(axis=0), walk.corners.max(axis=0)
+    _place(made, area.s_m, 0.0, 0.0)
+    (low_u, low_v), (high_u, high_v) = area.corners.min(axis=0), area.corners.max(axis=0)
     for key, value in (("hdg", 0.0), ("length", high_u - low_u), ("width", high_v - low_v), ("height", 0.0)):
         made.set(key, decimal_text(value))
     outline = add_child(add_child(made, "outlines"), "outline", id="0", closed="true", outer="true")
-    for i, (u, v) in enumerate(walk.corners):
+    for i, (u, v) in enumerate(area.corners):
         add_child(outline, "cornerLocal", id=str(i), u=decimal_text(u), v=decimal_text(v), z="0", height="0")
 
 

@@ -74,11 +74,10 @@ class _Document:
         self.junctions = {node: str(i) for i, node in enumerate(crossed, 1)}
         self.control = control_of(graph, roads)
         ids = map(str, count(len(self.control.stop_lines) + 1))
-        self.crosswalks = crosswalks_of(graph, roads, ids)
+        crosswalks = crosswalks_of(graph, roads, ids)
         self.stalls = {street.id: tuple(stalls_of(street, ids)) for street in roads}
         self.cones = cones_of(graph, roads, ids)
-        self.gores = gores_of(graph, roads, ids)
-        self.grounds = grounds_of(graph, roads, ids)
+        self.areas = (*crosswalks, *gores_of(graph, roads, ids), *grounds_of(graph, roads, ids))
         self.connectors = [self._connector(str(len(roads) + i), link) for i, link in enumerate(links, 1)]
 
     def _connector(self, name: str, link: Connection) -> Connector:
@@ -134,10 +133,8 @@ class _Document:
         add_pieces(add_child(road, "planView"), street.line)
         add_street_lanes(add_child(road, "lanes"), street)
         lines = [line for line in self.control.stop_lines if line.road == street.id]
-        walks = [walk for walk in self.crosswalks if walk.road == street.id]
-        gores = [gore for gore in self.gores if gore.road == street.id]
-        grounds = [ground for ground in self.grounds if ground[1].road == street.id]
-        add_objects(road, lines, walks, self.stalls[street.id], self.cones.get(street.id, ()), gores, grounds)
+        areas = [area for area in self.areas if area.road == street.id]
+        add_objects(road, lines, areas, self.stalls[street.id], self.cones.get(street.id, ()))
         add_signals(road, [signal for signal in self.control.signals if signal.road == street.id])
 
     def _type(self, road: Element, street: Street) -> None:

@@ -220,7 +220,7 @@ class RestFit:
 
     def _way_m(self, name: str, ends: Floats) -> Floats:
         """(n,) metres from the place of a vehicle at the first contact to (n, 3) last poses."""
-        way: Floats = np.linalg.norm(ends[:, :2] - self.scene.tracks[name].driven[self.scene.contact, :2], axis=1)
+        way: Floats = np.hypot(*(ends[:, :2] - self.scene.tracks[name].driven[self.scene.contact, :2]).T)
         return way
 
     def _unspun(self, name: str, course: CourseTold, ends: Floats) -> Floats:

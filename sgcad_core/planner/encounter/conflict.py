@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
-from sgcad_core.planner.actor_plan import Role, is_beside, is_standing, speed_there
+from sgcad_core.planner.actor_plan import Role, is_standing, speed_there
 from sgcad_core.planner.encounter.maneuver_choices import UNTOLD
 from sgcad_core.planner.encounter.meeting_place import TURNING, Place, meeting_places, preferred_station
 from sgcad_core.planner.encounter.motion_options import (
@@ -27,12 +27,12 @@ from sgcad_core.planner.encounter.motion_options import (
 from sgcad_core.planner.encounter.pairing import GOOD, Encounter, Stage, Ways, cannot, search
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.box_angles import ASKEW
-from sgcad_core.planner.lines.crossing import end_meets_flank, implied_crossings
+from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.departures import departs, departure_sides, departure_station, side_of
 from sgcad_core.planner.lines.told_moves import with_room
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
 from sgcad_core.planner.long_things import is_long
-from sgcad_core.planner.stationary_actors import parked_beside_m
+from sgcad_core.planner.stationary_actors import needs_angle, parked_beside_m
 from sgcad_core.records.course import Courses, CourseTold
 from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact, size_m
 
@@ -211,9 +211,7 @@ def _unturned(role: Role) -> list[Option]:
 
 def _may_stand_askew(role: Role) -> bool:
     """Whether it stands in the road where an end is told to meet a flank, which takes an angle between the two."""
-    if not is_standing(role) or role.actor.record.thing or not end_meets_flank(role):
-        return False
-    return role.actor.maneuver == "stopped" or not is_beside(role.side)
+    return is_standing(role) and not role.actor.record.thing and needs_angle(role)
 
 
 def _slightly_askew(role: Role) -> list[Option]:

@@ -116,7 +116,7 @@ class RoadFacts:
     taken: frozenset[str] = frozenset()
     center_line: CenterLine = ""
     ground: tuple[Ground, ...] = ()
-    """Ground beside its roads that the story names, and no vehicle is stopped by."""
+    """Ground beside its roads that the story names."""
 
     def lists(self, axis: Compass) -> bool:
         """Whether the story tells every lane of both legs on an axis, leg by leg, and turn lanes among them."""

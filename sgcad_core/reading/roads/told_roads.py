@@ -12,6 +12,7 @@ from typing import Literal, get_args
 from sgcad_core.kinds import DRIVEWAY, RAMP
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
 from sgcad_core.reading.roads.road_mentions import axis_of
+from sgcad_core.reading.text.compass import turned
 from sgcad_core.records.specs import Compass, Road, RoadArea, RoadSpec, ToldRoad
 
 _IN_TOWN = ("bike_lane", "parking", "sidewalk")
@@ -23,10 +24,9 @@ def told_roads(facts: RoadFacts, spec: RoadSpec) -> Mapping[str, ToldRoad]:
     told = {road.id: _as_told(road, _facts_of(road, facts), in_town) for road in spec.roads}
     streets = [road for road in spec.roads if _facts_of(road, facts)]
     line = facts.center_line if facts.junction.kind == "none" else ""  # at a junction it may be that of either road
-    told |= {road.id: told[road.id]._replace(center_line=line) for road in streets if line}
-    side = _side_left(facts)
+    side = _side_left(facts) if facts.ground else ""
     return told | {
-        road.id: told[road.id]._replace(ground=facts.ground, ground_side=side) for road in streets if facts.ground
+        road.id: told[road.id]._replace(center_line=line, ground=facts.ground, ground_side=side) for road in streets
     }
 
 
@@ -58,10 +58,8 @@ def _side_left(facts: RoadFacts) -> Compass | Literal[""]:
 
 def _as_compass(departs: str, heading: Compass | None) -> Compass | None:
     """The side of a departure; None where it hangs on a heading that is not known."""
-    order = get_args(Compass)
-    if departs in order:
+    if departs in get_args(Compass):
         return departs  # type: ignore[return-value]
     if departs not in ("left", "right") or heading is None:
         return None
-    found: Compass = order[(order.index(heading) + (2 if departs == "right" else -2)) % len(order)]
-    return found
+    return turned(heading, 90 if departs == "right" else -90)

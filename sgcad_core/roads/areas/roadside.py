@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import NamedTuple, get_args
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -16,12 +16,14 @@ from sgcad_core.geometry.distances import nearest_on
 from sgcad_core.geometry.plane import arc_lengths, corners_of, offset_polyline, resample
 from sgcad_core.records.specs import Compass, Ground, ToldRoad
 from sgcad_core.roads.lane_graph import Edge, Floats, LaneGraph
+from sgcad_core.roads.layout import bearing_rad
 
 WITHIN_M: dict[Ground, tuple[float, float]] = {"curb": (0.0, 0.15), "ditch": (1.5, 3.5), "embankment": (1.5, 5.5)}
 """Where each kind begins and ends beyond the edge of the pavement: a curb is 6 in wide."""
 _KEY = "ground"
 """The parameter of an edge (`formats/sumo/parameters.py`)."""
 _STEP_M = 8.0
+"""Longest piece of a border."""
 _SIDEWALK = "sidewalk"
 """Type of a lane that lies beyond the curb."""
 
@@ -72,11 +74,11 @@ def ground_beside(told: ToldRoad, line: Floats, *, apart: bool) -> str:
     return " ".join(words)
 
 
-def _looks_to(side: str, east: float, north: float) -> bool:
+def _looks_to(side: Compass | Literal[""], east: float, north: float) -> bool:
     """Whether a direction lies within 60 degrees of a compass side; any does where none is told."""
     if not side:
         return True
-    angle = math.pi / 2 - get_args(Compass).index(side) * math.pi / 4
+    angle = bearing_rad(side)
     return east * math.cos(angle) + north * math.sin(angle) >= 0.5 * math.hypot(east, north)
 
 
