@@ -130,6 +130,8 @@ def _contact(reading: Reading, sentence: Sentence, read: _Read) -> bool:
     """A contact of this sentence, or of the vehicles that it names."""
     if reading.crash.near_crash or read.has(sentence.start, "contacts.", "impacts.", "others."):
         return True
+    if not is_impact(rule("account.met_ground").sub(" ", sentence.text)):
+        return True
     if "contact" in read.acts.get(sentence.start, ()):
         return True
     names = reading.named_in(sentence)
@@ -156,8 +158,11 @@ def _is_retold(reading: Reading, text: str) -> bool:
         made = crash.vehicle(turn["who"])
         return made is not None and f"turn_{turn['side1'] or turn['side2']}" in (made.maneuver, made.meant)
     if behind := rule("account.retold_behind").search(text):
-        pair = (behind["who"], behind["ahead"])
+        pair = (behind["who"] or behind["follows"], behind["ahead"] or behind["first"])
         return any((c.striker, c.struck) == pair and c.struck_area == "back" for c in crash.contacts)
+    if tows := rule("account.retold_towing").search(text):
+        towing = crash.vehicle(tows["who"])
+        return towing is not None and towing.trailer
     if leaves := rule("account.retold_leaving").search(text):
         came = crash.vehicle(leaves["who"])
         return came is not None and (came.origin or "").startswith(leaves["place"].replace(" ", "_"))

@@ -259,7 +259,8 @@ def _tow_owner(text: str) -> str | None:
     verb = rule("vehicles.tow_verb").search(text)
     if not verb:
         return None
-    before = [] if verb[0].startswith("trailer") else MENTION.findall(text[: verb.start()])
+    named_behind = verb[0].endswith(("of ", "for "))
+    before = [] if named_behind else MENTION.findall(text[: verb.start()])
     before = before or MENTION.findall(text[verb.start() :])[:1] or MENTION.findall(text)
     return before[-1] if before else None
 

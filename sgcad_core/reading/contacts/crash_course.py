@@ -124,6 +124,7 @@ def _read(one: _CourseReader, segment: Segment, impact: int, event: str, *, late
     _read_evasion(one, segment, before, early=early)
     if segment.role not in RETOLD and early:
         _read_departure(one, segment, before)
+        _read_early_roll(one, segment, before)
     if behind:
         _read_spin(one, segment, behind)
         _read_rest(one, segment, behind)
@@ -155,6 +156,14 @@ def _read_departure(one: _CourseReader, segment: Segment, text: str) -> None:
     one.course = replace(one.course, departs=found.side if found else None)
     if found and found.words in text:
         one.sources["departs"] = Source(segment.number, found.words, found.rule)
+
+
+def _read_early_roll(one: _CourseReader, segment: Segment, text: str) -> None:
+    """A vehicle that rolls over before it touches anything; "rolled over" alone may tell of a line that it crossed."""
+    rolled = rule("course_rest.rolled").search(text)
+    if rolled and (rule("course_rest.quarters").search(text) or "turn" in rolled[0].lower()):
+        one.add("rolls", True, Source(segment.number, rolled[0], "course_rest.rolled"))
+        _read_roll(one, segment, text)
 
 
 def _keep_moves(one: _CourseReader) -> None:

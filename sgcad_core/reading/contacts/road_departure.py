@@ -100,8 +100,14 @@ def wandering(told: Sequence[MoveHeard]) -> list[MoveHeard]:
         if last is None or not _again(last, one.move):
             kept.append(one)
     ways = [way for one in kept if (way := _way(one.move))]
-    turns = sum(a != b and "either" not in (a, b) for a, b in pairwise(ways))
-    return kept if turns else []
+    return kept if any(_turns(a, b) for a, b in pairwise(ways)) else []
+
+
+def _turns(before: str, way: str) -> bool:
+    """Whether two moves in a row lead to different sides; a hand and a compass point may be the same side."""
+    if before == way or "either" in (before, way):
+        return False
+    return "back" in (before, way) or (before in _HANDS) == (way in _HANDS)
 
 
 def _again(before: Move, move: Move) -> bool:
@@ -110,12 +116,12 @@ def _again(before: Move, move: Move) -> bool:
 
 
 def _way(move: Move) -> str | None:
-    """To which hand a move leads, "back" or "either"; a yaw leads nowhere."""
+    """To which hand or compass point a move leads, "back" or "either"; a yaw leads nowhere."""
     if move.kind == "yaws":
         return None
     if move.kind == "returns":
         return "back"
-    return "left" if move.kind == "crosses" else move.side if move.side in _HANDS else "either"
+    return "left" if move.kind == "crosses" else move.side or "either"
 
 
 def _side(text: str, left: re.Match[str]) -> DepartureSide | None:

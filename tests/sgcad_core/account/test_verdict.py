@@ -143,6 +143,7 @@ def test_driving_out_of_the_lanes_that_nobody_tells_costs_the_verdict(x_m, lacki
     ("V1 was northbound in lane 2 of a four-lane road. The front of V1 struck the back of V2.", set()),
     ("V1 was northbound. The front of V1 struck the back of V2. V1 then rolled over.", set()),
     ("V1 was northbound. The front of V1 struck the back of V2. V3 was hit by flying components.", {"text.contact"}),
+    ("V1 was northbound. V1 left the road and its right side contacted the ground as V1 tripped.", set()),
     ("The front of V1 struck the back of V2 where the lane 3 marker was.", {"text.lane"}),
 ])  # fmt: skip
 def test_what_seems_told_and_was_not_read_is_named(text, unread) -> None:
@@ -165,6 +166,10 @@ STRUCK = " The front of V2 struck the left side of V1."
     (CROSSING + "V1 turned left.", "V1 began to turn left at the intersection.", STRUCK, True),
     ("V1 and V2 were northbound.", "V1 was traveling behind V2.", " The front of V1 struck the back of V2.", True),
     ("V1 and V2 were northbound.", "V2 was traveling behind V1.", " The front of V1 struck the back of V2.", False),
+    ("V1 and V2 were northbound.", "V2 was ahead of V1.", " The front of V1 struck the back of V2.", True),
+    ("V1 and V2 were northbound.", "V1 was ahead of V2.", " The front of V1 struck the back of V2.", False),
+    (CROSSING, "V1 was passing through the intersection at the same time as V2.", STRUCK, True),
+    (CROSSING + "V1 was towing a trailer.", "V1 was towing a trailer.", STRUCK, True),
     ("V1 was northbound, leaving a driveway. V2 was eastbound.", "V1 exited the driveway.", STRUCK, True),
     ("V1 was northbound.", "A deer ran from the right into the lane of V1.", " V1 struck the deer.", True),
     ("V1 was northbound.", "A dog crossed the path of V1.", " V1 struck a tree.", False),

@@ -685,6 +685,11 @@ def test_lanes_are_read_by_number(told: str, lane: int) -> None:
     assert read(f"V1 was traveling north {told} of a ten-lane freeway.").crash.vehicles[0].lane == lane
 
 
+def test_the_trailer_of_a_vehicle_is_its_own_whoever_is_named_behind_it() -> None:
+    told = read("V1 and V2 were northbound. V2 turned right and the right side of V2's trailer contacted V1.").crash
+    assert [v.trailer for v in told.vehicles] == [False, True]
+
+
 def test_one_trailer_is_a_trailer() -> None:
     found = read("V1, a 2004 Freightliner tractor pulling one trailer, was traveling east.").crash
     assert found.vehicles[0].trailer

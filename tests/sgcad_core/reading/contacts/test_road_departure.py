@@ -41,6 +41,9 @@ def test_the_last_side_on_which_the_road_is_left(texts: list[str], side: str | N
     ("departed the road to the right, attempted to return to the roadway, and went on off the right side of the road",
      []),
     ("drifted to the left and departed the roadway to the left", []),
+    ("drifted off the western edge of the road, corrected and drove off the eastern edge", ["departs W", "departs E"]),
+    ("ran off the western edge of the road and returned to the roadway", ["departs W", "returns"]),
+    ("departed the western road edge, then went off the road to the left", []),
 ])  # fmt: skip
 def test_moves_that_lead_to_more_than_one_side_are_kept_in_order(text: str, moves: list[str]) -> None:
     course = read(f"V1 was traveling north. V1 {text}. The front of V1 struck a tree.").crash.courses["V1"]
