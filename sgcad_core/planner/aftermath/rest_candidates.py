@@ -36,7 +36,7 @@ _TURNING = (1.0, 0.8, 0.6, 0.45, 0.35)
 """Resistance to turning: rolling tires give less than locked ones."""
 _SLIDES_SHARE, _SLIDES_TURNING = (0.25, 0.4, 0.6, 0.92), (1.0, 0.6, 0.35)
 """Of a body that slides on bent and locked wheels: share of the friction, and resistance to turning."""
-_DRAGS = (0.0, 0.25, -0.25, 0.55, -0.55, 1.0, -1.0)
+_DRAGS = (0.0, 0.25, -0.25, 0.55, -0.55, 1.0, -1.0, 1.8, -1.8)
 """Moment of wheels that drag on one side, as a share of what two that are locked there have."""
 _DRAG_LEVER_PER_M = 0.2
 """That moment per m/s2 of braking: half of it acts at half of the track, over the squared radius of gyration of a

@@ -48,7 +48,7 @@ _SPEEDS_ASIDE = ((0.5, 1.1), (1.1, 0.5))
 way."""
 _PLACES = 5
 """Places along the stated sides, at each of the speeds."""
-_MOST, _MOST_AGAIN = 5, 14
+_MOST, _MOST_AGAIN = 12, 14
 """Encounters tried: each costs about as much as the first. More where the two touch a second time, since a tail hits
 the other only for some places of the impact."""
 _RANKED, _RANKED_AGAIN = 15, 30

@@ -205,7 +205,7 @@ def _how(tail: str) -> How | None:
         return "from"
     if rule("mentions.onto").search(tail):
         return "onto"
-    on = rule("mentions.on").search(tail)
+    on = rule("mentions.on").search(tail := rule("mentions.junction_on_the_way").sub("", tail))
     return "on" if on and not rule("mentions.left_it").search(tail) else None
 
 
