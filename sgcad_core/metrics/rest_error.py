@@ -36,8 +36,9 @@ _NEAR_SHARE, _NEAR_M = 0.3, 1.0
 """A distance is right within this share of it, or so many metres."""
 _TURN_SHARE, _TURN_RAD = 0.25, math.radians(30.0)
 """A rotation is right within this share of it, or this angle."""
-_JUNCTION_M = 1.5
-"""Distance out of the area of a junction at which a center still counts as in the intersection."""
+_ACROSS, _CORNER_RAD = math.cos(math.radians(30.0)), math.radians(45.0)
+"""A side lies beside a road that runs across it within 30 degrees; of other roads it is a corner of their junction, of
+which each has a quarter."""
 _CORNER_M = 45.0
 """A side is seen from the center of a junction within this distance."""
 _LANE_EDGE_M = 0.3
@@ -125,8 +126,7 @@ def _misplaced(
     if told.where == "shoulder":
         return np.maximum(SHOULDER_M[0] - off, off - SHOULDER_M[1])
     if told.where == "intersection" and surface.junctions:
-        out = [np.hypot(poses[:, 0] - x, poses[:, 1] - y) - r for x, y, r in surface.junctions]
-        closest: Floats = np.min(out, axis=0) - _JUNCTION_M
+        closest: Floats = np.min([junction.out_m(poses[:, :2]) for junction in surface.junctions], axis=0)
         return closest
     if told.where == "intersection":
         return off - OFF_M
@@ -199,8 +199,10 @@ def _beside(
         return _apart(seen, came_rad + (math.pi / 2 if side == "left" else -math.pi / 2))
     wanted = compass_rad(COMPASS_DEG[side])
     best = _apart(bearing, wanted)
-    for x, y, _ in surface.junctions:
-        dx, dy = poses[:, 0] - x, poses[:, 1] - y
+    across = np.abs(np.sin(surface.ways[nearest] - wanted)) > _ACROSS
+    for junction in surface.junctions:
+        dx, dy = poses[:, 0] - junction.x_m, poses[:, 1] - junction.y_m
         near = np.hypot(dx, dy) < _CORNER_M
-        best = np.where(near, np.minimum(best, _apart(np.arctan2(dy, dx), wanted)), best)
+        seen = _apart(np.arctan2(dy, dx), wanted)
+        best = np.where(near, np.where(across, np.minimum(best, seen), seen * SIDE_RAD / _CORNER_RAD), best)
     return best

@@ -11,9 +11,10 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
 
 from sgcad_core.geometry.plane import arc_lengths, resample
-from sgcad_core.roads.lane_graph import Floats, LaneGraph, road_of
+from sgcad_core.roads.lane_graph import Floats, Lane, LaneGraph, road_of
 from sgcad_core.roads.lane_positions import Position, position
 
 _LONGEST_M = 8.0
@@ -23,11 +24,19 @@ _LEAST_WIDTH_M = 3.2
 
 
 class Junction(NamedTuple):
-    """A junction of three or more roads: its center, and the radius of its area."""
+    """A junction of three or more roads: its center, and its area, within the ends of the lanes that meet there."""
 
     x_m: float
     y_m: float
-    radius_m: float
+    normals: Floats
+    """(n, 2) unit vectors out of the area, across each of its sides."""
+    reaches_m: Floats
+    """(n,) distance of each side from the origin along its normal."""
+
+    def out_m(self, points: Floats) -> Floats:
+        """(m,) metres by which (m, 2) points lie out of the area; negative within it."""
+        out: Floats = (points @ self.normals.T - self.reaches_m).max(axis=1)
+        return out
 
 
 OfLane = Position | Literal["center", "junction"]
@@ -112,11 +121,19 @@ def _junctions(graph: LaneGraph) -> Iterator[Junction]:
     ends: dict[str, list[Floats]] = {}
     roads: dict[str, set[str]] = {}
     for edge in graph.edges.values():
-        for node, at in ((edge.from_node, 0), (edge.to_node, -1)):
-            ends.setdefault(node, []).extend(lane.shape[at] for lane in edge.lanes)
+        for node, at, before in ((edge.from_node, 0, 1), (edge.to_node, -1, -2)):
+            ends.setdefault(node, []).extend(_corners(lane, at, before) for lane in edge.lanes)
             roads.setdefault(node, set()).add(road_of(edge.id)[0])
     for node, met in roads.items():
         if len(met) >= 3:
-            points = np.array(ends[node])
-            x, y = points.mean(axis=0)
-            yield Junction(float(x), float(y), float(np.hypot(points[:, 0] - x, points[:, 1] - y).max()))
+            corners = np.vstack(ends[node])
+            x, y = corners.mean(axis=0)
+            hull = ConvexHull(corners)
+            yield Junction(float(x), float(y), hull.equations[:, :2], -hull.equations[:, 2])
+
+
+def _corners(lane: Lane, at: int, before: int) -> Floats:
+    """(2, 2) both corners of a lane at one of its ends."""
+    east, north = lane.shape[at] - lane.shape[before]
+    across = np.array([-north, east]) * lane.width_m / 2 / max(np.hypot(east, north), 1e-9)
+    return lane.shape[at] + np.array([across, -across])

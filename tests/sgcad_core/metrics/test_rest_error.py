@@ -8,7 +8,8 @@ import pytest
 from sgcad_core.metrics.rest_error import near_m, rest_errors
 from sgcad_core.records.course import AT_IMPACT_M, RestTold
 from sgcad_core.roads.lane_positions import Position
-from sgcad_core.roads.surface import RoadSurface
+from sgcad_core.roads.surface import RoadSurface, road_surface
+from tests.sgcad_core.planner.crash_scenes import network
 
 WIDTH = 3.5
 NONE: frozenset[str] = frozenset()
@@ -72,3 +73,26 @@ def test_the_median_is_never_on_the_right_of_a_vehicle_that_came_on_either_carri
 ])  # fmt: skip
 def test_a_rest_at_the_impact_may_lie_some_metres_off(told_m: float, met_m: float, fits: bool) -> None:
     assert (abs(met_m - told_m) <= near_m(told_m)) == fits
+
+
+# ------------------------------------------------------------------ at a junction of two roads, north and east
+@pytest.fixture(scope="module")
+def crossing() -> RoadSurface:
+    return road_surface(network("four_leg"))
+
+
+@pytest.mark.parametrize(("place", "inside"), [
+    ((0.0, 0.0), True), ((3.0, -4.0), True), ((0.0, 16.0), False), ((-17.0, -2.0), False), ((10.0, 10.0), False),
+])  # fmt: skip
+def test_in_the_intersection_is_within_the_ends_of_the_lanes(crossing, place, inside) -> None:
+    found = rest_errors(RestTold(where="intersection"), np.array([[*place, 0.0]]), 0.0, crossing)
+    assert found.right()["where"] == inside
+
+
+@pytest.mark.parametrize(("side", "place", "fits"), [
+    ("SW", (-12.0, -12.0), True), ("SW", (-10.0, -25.0), True), ("SW", (0.5, -28.0), False), ("SW", (-12.0, 12.0), False),
+    ("SW", (12.0, -12.0), False), ("W", (-10.0, -25.0), True), ("S", (-25.0, -10.0), True), ("E", (-10.0, -25.0), False),
+])  # fmt: skip
+def test_a_corner_is_one_quarter_of_the_junction(crossing, side, place, fits) -> None:
+    found = rest_errors(RestTold(where="off_road", side=side), np.array([[*place, 0.0]]), 0.0, crossing)
+    assert found.right()["side"] == fits
