@@ -55,9 +55,9 @@ class Drivable(Validator):
 
 
 def _knocked_down(scenario: Scenario, behavior: BehaviorSpec) -> set[str]:
-    """Things that gave way: they do not stay where they stood."""
+    """Things that gave way, which do not stay where they stood, and those on the ground."""
     yielding = {actor.id for actor in behavior.actors if actor.record.thing and not actor.firm}
-    return {
+    return {actor.id for actor in behavior.actors if actor.flat} | {
         motion.actor for motion in scenario.planned if motion.actor in yielding
         and math.dist(motion.pose[0, :2], motion.pose[-1, :2]) > _MOVED_M
     }  # fmt: skip

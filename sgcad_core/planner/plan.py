@@ -227,7 +227,8 @@ class _Cast:
         track, thing = scene.tracks[first.struck], self.actors[first.struck]
         rolls = self.told.get(first.striker, CourseTold()).rolls
         goes_on = rolls or any(first.striker in pair_of(c) for c in self.contacts[1:])
-        if track.motion.fixed and (goes_on or thing.loose):
+        track.flat = thing.flat
+        if track.motion.fixed and not thing.flat and (goes_on or thing.loose):
             track.let_pass(glances=is_passed(thing, first.striker_area), stays=thing.firm)
 
     def _look(self, scene: Scene, pair: Iterable[tuple[Option, Motion, float]]) -> None:

@@ -68,6 +68,8 @@ class Track:
     """Whether what strikes it goes on past it."""
     firm: bool = False
     """Whether what strikes it glances off it and goes on, while it stays."""
+    flat: bool = False
+    """Whether what strikes it drives over it, while it stays."""
     driven: Floats = field(init=False)
     """Its poses without any contact."""
 
@@ -174,7 +176,8 @@ class Scene:
     def _cause(self) -> Hashable:
         """All that determines the motion to rest."""
         movers = tuple(
-            (t.actor, id(t.driven), t.size, t.mass, t.motion.fixed, t.gives_way, t.firm) for t in self.tracks.values()
+            (t.actor, id(t.driven), t.size, t.mass, t.motion.fixed, t.gives_way, t.firm, t.flat)
+            for t in self.tracks.values()
         )
         chosen = self.friction, self.restitution, self.again, self.told, tuple(self.runs.items())
         return movers, tuple(self.hitches), chosen, self.rolling, self.surface, self.count
@@ -194,7 +197,7 @@ class Scene:
         runs = self.runs.get(track.actor, ())
         return Mover(
             track.actor, start, track.driven, self.drag(track), runs, gives_way=track.gives_way, firm=track.firm,
-            falls=actor_kind(track.kind).thing,
+            flat=track.flat, falls=actor_kind(track.kind).thing,
         )  # fmt: skip
 
     def drag(self, track: Track) -> Drag:

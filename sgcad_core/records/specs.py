@@ -199,6 +199,7 @@ class Actor(Spec):
     gore: bool = added(False, "in the gore of a ramp: what stands there, or who crosses it into exit_road")
     firm: bool = added(False, "a thing that stays where it stands: what drives on has glanced off it")
     loose: bool = added(False, "a piece that lies in the way: what strikes it drives on over it")
+    flat: bool = added(False, "a thing on or in the ground (a curb, a ditch): what strikes it drives over it, it stays")
     acts: Acts | None = added(None, "what it did beside its maneuver, of a vehicle; null where nothing of it is told")
 
     @property

@@ -249,7 +249,7 @@ class Wreck:
         self._lasting |= {frozenset(key)} if any(0.0 < m.body.speed < _SLOW_MPS for m in (a, b)) else set()
         for m in (a, b):
             self._release(m, sample)
-        self.gone |= {key} if glances(a, b) else set()
+        self.gone |= {key} if a.flat or b.flat or glances(a, b) else set()
         return key not in self.gone and not self.crushes.begins(a, b, seen, self.now)
 
     def _release(self, m: Mover, sample: int) -> None:

@@ -48,6 +48,8 @@ class Mover:
     """Whether what strikes it goes on past it."""
     firm: bool = False
     """Whether what strikes it glances off it and goes on, while it stays."""
+    flat: bool = False
+    """Whether what strikes it drives over it, while it stays."""
     falls: bool = False
     """Whether it falls over where it gives way, and digs in."""
 

@@ -25,7 +25,8 @@ _SIZE_M: dict[str, tuple[float, float]] = {
     "railing": (0.3, 10.0), "snowbank": (1.5, 8.0), "dumpster": (1.8, 2.0), "bridge": (0.8, 12.0),
     "abutment": (1.0, 3.0), "ditch": (2.0, 12.0), "culvert": (1.0, 1.2), "berm": (1.5, 10.0), "hedge": (1.0, 6.0),
     "cable": (0.3, 14.0), "shrub": (1.0, 1.0), "trunk": (0.6, 0.6), "stump": (0.5, 0.5), "column": (0.8, 0.8),
-    "pillar": (0.8, 0.8), "bollard": (0.2, 0.2), "garage": (5.0, 5.0), "shed": (3.0, 3.0),
+    "curb": (0.3, 8.0), "curbing": (0.3, 8.0), "median": (1.2, 12.0), "island": (2.0, 4.0), "hole": (0.8, 0.8),
+    "pothole": (0.6, 0.6), "swale": (2.0, 12.0), "pillar": (0.8, 0.8), "bollard": (0.2, 0.2), "garage": (5.0, 5.0), "shed": (3.0, 3.0),
 }  # fmt: skip
 """Depth and width of things as a car meets them, metres; others are posts."""
 _FIRM = frozenset((
@@ -39,6 +40,8 @@ _LOOSE = frozenset((
     "mattress", "cargo", "bag", "cart",
 ))  # fmt: skip
 """Pieces that a vehicle drives over, or pushes out of its way, without being stopped."""
+_FLAT = frozenset(("curb", "curbing", "median", "island", "ditch", "hole", "pothole", "swale", "ground"))
+"""Things on or in the ground: a vehicle drives over them, and they stay."""
 _USUAL_M = (0.4, 0.4)
 _LONG_M = 1.5
 """Width from which a thing stands along the road."""
@@ -69,13 +72,17 @@ def with_roadside(
 
 
 def _held(actor: Actor, word: str) -> Actor:
-    """The actor, as large as things of its name are, firm where it does not give way, loose where it does at once."""
+    """The actor, as large as things of its name are; firm, loose or flat where things of that name are."""
     named = word.lower().rpartition(" ")[2]
     thing = actor.record.thing and not actor.length_m
     size = _SIZE_M.get(named) or _SIZE_M.get(named.rstrip("s"))
     if thing and size:
         actor = actor.model_copy(update={"length_m": size[0], "width_m": size[1]})
-    kinds = {name for name, words in (("firm", _FIRM), ("loose", _LOOSE)) if {named, named.rstrip("s")} & words}
+    kinds = {
+        name
+        for name, words in (("firm", _FIRM), ("loose", _LOOSE), ("flat", _FLAT))
+        if {named, named.rstrip("s")} & words
+    }
     return actor.model_copy(update=dict.fromkeys(kinds, True)) if actor.record.thing and kinds else actor
 
 

@@ -244,6 +244,7 @@ def _read_distance(one: _CourseReader, segment: Segment, text: str) -> None:
 def _rest_clause(segment: Segment, text: str) -> str | None:
     """The text from the verb of coming to rest on; None where it has none."""
     m = rule("course_rest.rest").search(text) or rule("course_rest.stopped_there").search(text)
+    m = m or rule("course_rest.stood_facing").match(text)
     return text[m.start() :] if m else None
 
 

@@ -55,6 +55,8 @@ class DepartureReader:
         """Take the next text in order. Returns the moves that it tells."""
         told: list[MoveHeard] = []
         for at, kind, name, m in sorted(_events(text), key=lambda event: event[0]):
+            if name == "departures.enters" and not self.found:
+                continue
             told.append(MoveHeard(Move(kind, self._taken(text, kind, name, m)), m[0].strip(), name, at))
         return told
 
@@ -78,7 +80,8 @@ def _events(text: str) -> Iterator[tuple[int, MoveKind, str, re.Match[str]]]:
     """(place, what it is, rule, match) of all that is told of leaving the road and coming back."""
     kinds: tuple[tuple[Rule, MoveKind], ...] = (
         (rule("departures.left_road"), "departs"), (rule("course_rest.back_on_road"), "returns"),
-        (rule("departures.returns"), "returns"), (rule("departures.toward"), "steers"),
+        (rule("departures.returns"), "returns"), (rule("departures.enters"), "returns"),
+        (rule("departures.toward"), "steers"),
         (rule("departures.yaws"), "yaws"),
     )  # fmt: skip
     for wording, kind in kinds:
