@@ -91,7 +91,7 @@ class _Assignment:
         A vehicle that backs across a junction moves tail first, away from its facing; without a junction it faces along
         its way and rolls back in it. Stalls have a rule of their own.
         """
-        tail_first = goes_tail_first(v) and not is_aisle(way.road) and bool(exits(way, self.ways))
+        tail_first = goes_tail_first(v) and not is_aisle(way.road) and not self.plain and bool(exits(way, self.ways))
         return angle_of(v.heading or "N") + (math.pi if tail_first else 0.0)
 
     def _kind_cost(self, v: VehicleFacts, way: Way) -> float:
@@ -130,11 +130,11 @@ class _Assignment:
             return None, 1.5 if wanted else 0.4
         return best, misfit
 
-    @staticmethod
-    def _backs_up(v: VehicleFacts, way: Way) -> bool:
-        """Whether it faces along its lane and rolls back in it; a told direction of a backing vehicle is its travel."""
+    def _backs_up(self, v: VehicleFacts, way: Way) -> bool:
+        """Whether it faces along its lane and rolls back in it; the direction told of a backing vehicle is its travel,
+        unless it faces there on a road without a junction."""
         on_street = v.origin not in DRIVES and way.road.kind != DRIVEWAY
-        return v.maneuver == "backing" and on_street and not v.heading_stated
+        return v.maneuver == "backing" and on_street and (not v.heading_stated or (self.plain and v.faces))
 
     def _exit_misfit(self, v: VehicleFacts, way: Way, onward: Way, wanted: float) -> float:
         off = apart(turn_of(way, onward), wanted) / _QUARTER

@@ -45,6 +45,15 @@ def test_who_faces_one_way_and_backs_comes_from_the_side_that_it_faces() -> None
     assert _actor(_behavior(told), "V2").road == "E"
 
 
+def test_who_faces_along_a_road_without_a_junction_backs_up_in_its_own_lane() -> None:
+    told = "V1 was traveling east. V2 was behind V1. V1 stopped in the road and began to move in reverse. The back of " \
+           "V1 struck the front of V2."  # fmt: skip
+    found = _behavior(told, PLAIN)
+    assert (_actor(found, "V1").road, _actor(found, "V1").direction, _actor(found, "V1").exit_road) == (
+        _actor(found, "V2").road, _actor(found, "V2").direction, None,
+    )  # fmt: skip
+
+
 def test_a_stated_heading_starts_on_the_opposite_leg() -> None:
     found = _behavior("V1 was traveling north. V2 was traveling west. The front of V1 struck the left side of V2.")
     assert (_actor(found, "V1").road, _actor(found, "V1").direction) == ("S", "forward")
