@@ -133,8 +133,12 @@ def _crowd(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     if made.reading.crash.unnumbered and len(vehicles) <= _PAIR:
         for match in rule("account.another").finditer(sentence.text):
             yield _undrawn(sentence, match[0])
-    if not any(name[0] in "PB" for name in made.tracks) and (match := rule("account.waited_for").search(sentence.text)):
-        yield _lacks(sentence, "further", match["who"].lower(), f"{match[0]!r} is told", "none is in the scenario")
+    if not any(name[0] in "PBA" for name in made.tracks):
+        for wording in (rule("account.waited_for"), rule("company.avoided")):
+            if match := wording.search(sentence.text):
+                who = next(filter(None, match.groups())).lower()
+                yield _lacks(sentence, "further", who, f"{match[0]!r} is told", "none is in the scenario")
+                break
     if match := rule("account.door").search(sentence.text):
         yield _lacks(sentence, "struck", "door", f"{match[0]!r} in a contact", "no door is drawn open")
 

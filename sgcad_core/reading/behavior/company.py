@@ -1,6 +1,7 @@
-"""Road users without a contact that are told ahead of one with a contact: queues, vehicles waited for, pedestrians.
+"""Road users without a contact that are told ahead of one with a contact: queues, vehicles that are waited for or
+avoided, pedestrians, animals.
 
-Adds them to a behavior in the lane of the one that waits; the planner places them ahead of it. Knows the reading, no
+Adds them to a behavior in the lane of the one that waits or evades; the planner places them ahead of it. Knows the reading, no
 roads and no motion. What is told elsewhere than ahead is not added.
 """
 
@@ -32,6 +33,10 @@ class _Told(NamedTuple):
     kind: ActorKind
     name: str | None
     waits: str | None
+    avoided: bool = False
+    """Whether the vehicle goes round it, be it off the road."""
+    letter: str = "V"
+    """First letter of its id."""
 
 
 def with_company(behavior: BehaviorSpec, reading: Reading) -> BehaviorSpec:
@@ -48,7 +53,7 @@ def with_company(behavior: BehaviorSpec, reading: Reading) -> BehaviorSpec:
         leader = _leader(told, row)
         if leader is None or len(actors) >= _MOST or told.name in {a.id for a in actors}:
             continue
-        name = told.name or _free(taken, "P" if actor_kind(told.kind).walks else "V")
+        name = told.name or _free(taken, told.letter)
         taken.add(name)
         actors.append(_ahead(told.kind, name, leader))
     return behavior.model_copy(update={"actors": tuple(actors)})
@@ -63,9 +68,9 @@ def _ahead(kind: ActorKind, name: str, leader: Actor) -> Actor:
 
 
 def _leader(told: _Told, row: list[Actor]) -> Actor | None:
-    """The vehicle that waits: as named, else the one that stands or slows; `row`: those of the contact, and others in
-    their lanes."""
-    able = [a for a in row if a.record.drives and a.maneuver in _WAITING]
+    """The vehicle that waits or evades: as named, else the one that stands or slows; `row`: those of the contact, and
+    others in their lanes."""
+    able = [a for a in row if a.record.drives and (a.maneuver in _WAITING or told.avoided) and a.maneuver != "parked"]
     if told.waits is not None:
         return next((a for a in able if a.id == told.waits), None)
     return next((a for a in able if a.maneuver in ("stopped", "slowing")), next(iter(able), None))
@@ -80,8 +85,9 @@ def _told(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:
     story = [s for s in reading.sentences if s.role in (*STORY_ROLES, "road") and s.start <= last]
     vehicles = [t for s in story for t in _vehicles(s)]
     queues = [t for s in story for t in _queue(s)][:_QUEUED] if alone and not vehicles else []
-    people = [] if walkers else [t for s in story for t in _people(s)][:1]
-    yield from (*vehicles[:1], *queues, *people)
+    people = [] if walkers else [t for s in story for t in (*_people(s), *_avoided(s))][:1]
+    ahead = vehicles or [t for s in story for t in _avoided_vehicles(s)]
+    yield from (*ahead[:1], *queues, *people)
 
 
 def _queue(sentence: Sentence) -> Iterator[_Told]:
@@ -106,7 +112,25 @@ def _vehicles(sentence: Sentence) -> Iterator[_Told]:
 def _people(sentence: Sentence) -> Iterator[_Told]:
     match = rule("account.waited_for").search(sentence.text)
     if match and match["who"].lower() == "pedestrian":
-        yield _Told(kind_of_word("pedestrian")[1], None, _named_before(sentence.text, match.start()))
+        letter, kind = kind_of_word("pedestrian")
+        yield _Told(kind, None, _named_before(sentence.text, match.start()), letter=letter)
+
+
+def _avoided(sentence: Sentence) -> Iterator[_Told]:
+    """People and animals that are avoided; with words of their own they come into the road of the next one named."""
+    for match in rule("company.avoided").finditer(sentence.text):
+        word = (match["who"] or match["comes"]).lower()
+        letter, kind = kind_of_word(word)
+        if actor_kind(kind).walks:
+            who = _named_before(sentence.text, match.start())
+            yield _Told(kind, None, who, avoided=True, letter=letter)
+
+
+def _avoided_vehicles(sentence: Sentence) -> Iterator[_Told]:
+    for match in rule("company.avoided_vehicle").finditer(sentence.text):
+        if not rule("company.elsewhere").search(f"{match['words']} {match['where'] or ''}"):
+            who = _named_before(sentence.text, match.start())
+            yield _Told(_vehicle_kind(match["kind"]), None, who, avoided=True)
 
 
 def _named_before(text: str, end: int) -> str | None:

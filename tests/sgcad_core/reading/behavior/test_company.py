@@ -32,6 +32,10 @@ def joined(text):
      [("V3", "bus", "stopped")]),
     ("V1 was traveling north and braked to avoid stopped traffic.",
      [("V3", "car", "stopped"), ("V4", "car", "stopped")]),
+    ("V1 was traveling north and swerved to avoid a deer.", [("A1", "pedestrian", "straight")]),
+    ("V1 was traveling north. An animal ran into the road in front of V1.", [("A1", "pedestrian", "straight")]),
+    ("V1 was traveling north and steered right to avoid a stopped truck.", [("V3", "truck", "stopped")]),
+    ("V1 was traveling north and steered right to avoid an oncoming vehicle.", []),
     ("V1 was traveling north and slowed.", []),
     ("V1 was traveling north and swerved to avoid stopped traffic.", []),
     ("V1 was traveling north past a queue of traffic and slowed.", []),
@@ -62,3 +66,14 @@ def test_a_queue_of_numbered_vehicles_is_not_drawn_twice():
         f"V3, V1 and V2 were traveling north. V3 was ahead in stopped traffic. {BEHIND} V1 then struck the rear of V3."
     )
     assert joined(text)[0] == []
+
+
+def test_one_that_leaves_the_road_to_avoid_an_animal_has_it_ahead_in_its_lane():
+    text = "V1 was traveling north and swerved to avoid a deer. V1 departed the road to the right and struck a tree."
+    (animal,), found = joined(text)
+    assert animal == ("A1", "pedestrian", "straight")
+    assert (found.actors[-1].road, found.actors[-1].direction) == (found.actors[0].road, found.actors[0].direction)
+
+
+def test_an_animal_that_is_struck_is_not_drawn_twice():
+    assert joined("V1 was traveling north when a deer ran into the road. The front of V1 struck the deer.")[0] == []
