@@ -45,6 +45,15 @@ def turned_to(hand: int, angle_rad: float) -> float:
     return -hand * (math.pi / 2 + angle_rad)
 
 
+def corner_side(pose: Floats, by: Size, away_rad: float) -> Area:
+    """The side on which a box at a pose touches a long thing that lies in a direction: that of the corner ahead, on
+    which side it counts follows from the proportions of the box."""
+    ahead, left = math.cos(away_rad - float(pose[2])), math.sin(away_rad - float(pose[2]))
+    if abs(ahead) * by[0] > abs(left) * by[1]:
+        return "front" if ahead > 0 else "back"
+    return "left" if left > 0 else "right"
+
+
 def beside(pose: Floats, by: Size, thing: Size, heading_rad: float, depth_m: float) -> Floats:
     """(3,) pose of the thing at a heading, overlapped by the nearest corner of a box at a pose by a depth, metres."""
     out = np.array([math.cos(heading_rad), math.sin(heading_rad)])

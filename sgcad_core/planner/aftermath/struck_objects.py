@@ -18,7 +18,7 @@ from sgcad_core.planner.actor_plan import is_beside
 from sgcad_core.planner.aftermath.second_contact import first_sides
 from sgcad_core.planner.aftermath.told_order import ToldOrder, touched
 from sgcad_core.planner.lines.path import Path
-from sgcad_core.planner.long_things import beside, hand_of_side, is_long, meeting_angle, turned_to
+from sgcad_core.planner.long_things import beside, corner_side, hand_of_side, is_long, meeting_angle, turned_to
 from sgcad_core.planner.motion import STEP_S, Motion, stand
 from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.records.specs import Actor, Area, size_m
@@ -169,8 +169,9 @@ def _places(scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, m
     """(3,) poses on the way of the vehicle, best first: off the road before on it, the stated side before others."""
     size, track = size_m(strike.thing), scene.tracks[strike.by]
     samples = _samples(scene, strike, track, after)
-    found = [(rank, pose) for k in samples for rank, pose in _beside(track, int(k), strike, size)
-             if _is_free(scene, strike, pose, size, int(k))]  # fmt: skip
+    near = _along_road(track, samples, strike, surface) if is_long(size) else iter(())
+    ranked = ((rank, pose, int(k)) for k in samples for rank, pose in _beside(track, int(k), strike, size))
+    found = [(rank, pose) for rank, pose, k in (*near, *ranked) if _is_free(scene, strike, pose, size, k)]
     if not found:
         return []
     poses = np.array([pose for _, pose in found])
@@ -207,7 +208,7 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
         if outward < _OUTWARD_MPS and not grazes:
             continue
         if is_long(size) and side != "back":
-            rank = 0 if side == strike.side or strike.side is None else 1
+            rank = 1 if side == strike.side or strike.side is None else 2
             yield from ((rank, pose) for pose in _along(track, k, side, size))
             continue
         if grazes:
@@ -237,6 +238,23 @@ def _grazed(track: Track, k: int, out: float, size: Size) -> Floats:
     reach = track.size[1] / 2 + size[0] / 2 - _GRAZE_M
     x, y = x + ahead * math.cos(heading), y + ahead * math.sin(heading)
     return np.array([x + reach * math.cos(out), y + reach * math.sin(out), out])
+
+
+def _along_road(
+    track: Track, samples: Floats, strike: Strike, surface: RoadSurface
+) -> Iterator[tuple[int, Floats, int]]:
+    """(0, pose, sample) of a long thing that runs along the nearest road, where the vehicle comes to it with the stated
+    side."""
+    size = size_m(strike.thing)
+    poses = track.poses[samples.astype(int)]
+    by = (poses - track.poses[samples.astype(int) - 1])[:, :2] / STEP_S
+    roads = surface.part([n for n, lane in enumerate(surface.lanes) if lane != "junction"])
+    _, _, nearest = roads.nearest(poses[:, :2])
+    for k, pose, speed, way in zip(samples.astype(int), poses, by, roads.ways[nearest], strict=True):
+        outward = float(speed[1] * math.cos(way) - speed[0] * math.sin(way))
+        away = float(way) + math.copysign(math.pi / 2, outward)
+        if abs(outward) > _OUTWARD_MPS and strike.side in (None, corner_side(pose, track.size, away)):
+            yield 0, beside(pose, track.size, size, away + math.pi, _DEPTH_M), int(k)
 
 
 def _along(track: Track, k: int, side: Area, size: Size) -> Iterator[Floats]:

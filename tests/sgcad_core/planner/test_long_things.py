@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from sgcad_core.geometry.plane import Box, contact_area, overlap
-from sgcad_core.planner.long_things import beside, hand_of_side, is_long, meeting_angle, turned_to
+from sgcad_core.planner.long_things import beside, corner_side, hand_of_side, is_long, meeting_angle, turned_to
 from sgcad_core.planner.plan import plan
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
@@ -43,6 +45,16 @@ def test_the_box_meets_it_with_that_side(side, way_deg):
     assert overlap(*boxes)
     assert contact_area(*boxes) == side
     assert contact_area(*boxes[::-1]) == "front"
+
+
+@given(way_deg=st.floats(-180, 180), away_deg=st.floats(-180, 180))
+def test_the_side_is_that_on_which_the_box_touches_what_lies_there(way_deg, away_deg):
+    size, rail = (4.7, 1.8), (0.4, 40.0)
+    pose, away = np.array([3.0, -2.0, math.radians(way_deg)]), math.radians(away_deg)
+    ahead, left = math.cos(away - pose[2]), math.sin(away - pose[2])
+    assume(abs(abs(ahead) * size[0] - abs(left) * size[1]) > 0.2)
+    put = beside(pose, size, rail, away + math.pi, 0.05)
+    assert contact_area(Box.at(pose, size), Box.at(put, rail)) == corner_side(pose, size, away)
 
 
 @pytest.mark.parametrize("departs", ["left", "right"])

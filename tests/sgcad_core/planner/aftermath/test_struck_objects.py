@@ -134,3 +134,27 @@ def test_a_vehicle_that_drives_on_scrapes_a_thing_with_its_told_flank(side: Area
     (struck, object_met) = (next(t for t in made.trajectories if t.actor == name).pose for name in ("V2", "O1"))
     hit = int(np.flatnonzero(box_gaps(struck, CAR, object_met, size_m) <= 0)[0])
     assert contact_area(Box.at(struck[hit], CAR), Box.at(object_met[hit], size_m)) == side
+
+
+@pytest.mark.parametrize("goes_on", [True, False])
+def test_a_vehicle_drives_over_what_lies_on_the_ground_and_it_stays(goes_on: bool) -> None:
+    ditch = thing(1).model_copy(update={"flat": True, "length_m": 0.8})
+    made = plan(crash(ditch, *([thing(2)] if goes_on else [])), network("four_leg"))
+    car, there = (next(t for t in made.trajectories if t.actor == name) for name in ("V2", "O1"))
+    assert np.ptp(there.x_m) == np.ptp(there.y_m) == 0.0
+    away = box_gaps(car.pose, CAR, there.pose, size_m(ditch))
+    over = np.flatnonzero(away <= 0)
+    assert len(over)
+    went = math.hypot(car.x_m[-1] - car.x_m[over[0]], car.y_m[-1] - car.y_m[over[0]])
+    assert went > 1.0, "it stops dead"
+
+
+def test_a_guardrail_runs_along_the_road_where_the_told_side_then_meets_it() -> None:
+    rail = thing(1).model_copy(update={"firm": True, "width_m": 14.0})
+    behavior = crash(rail)
+    side = behavior.contacts[1].model_copy(update={"striker_area": "back"})
+    behavior = behavior.model_copy(update={"contacts": (behavior.contacts[0], side)})
+    made = plan(behavior, network("four_leg"))
+    there = next(t for t in made.trajectories if t.actor == "O1")
+    assert abs(math.sin(2 * float(there.heading_rad[0]))) < 0.02
+    assert (made.notes, len(made.trajectories)) == ((), 3)
