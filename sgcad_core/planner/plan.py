@@ -226,8 +226,7 @@ class _Cast:
         after it or rolls over."""
         track, thing = scene.tracks[first.struck], self.actors[first.struck]
         rolls = self.told.get(first.striker, CourseTold()).rolls
-        goes_on = rolls or any(first.striker in pair_of(c) for c in self.contacts[1:])
-        track.flat = thing.flat
+        track.flat, goes_on = thing.flat, rolls or any(first.striker in pair_of(c) for c in self.contacts[1:])
         if track.motion.fixed and not thing.flat and (goes_on or thing.loose):
             track.let_pass(glances=is_passed(thing, first.striker_area), stays=thing.firm)
 
@@ -291,7 +290,7 @@ class _Cast:
         role, told = self.role(name), self.told.get(name, CourseTold())
         if self.behavior.near_crash or not departs(role.actor.maneuver, told.departs):
             return role
-        at = departure_station(role.course, role.actor.maneuver, role.place.station_m)
+        at = departure_station(role.course, role.actor.maneuver, role.place.station_m, beyond=told.beyond)
         return with_room(replace(role, told=told, place=role.place._replace(station_m=at)))
 
     def role(self, name: str) -> Role:

@@ -89,6 +89,8 @@ class CourseTold:
     lost_control: bool = False
     departs: DepartureSide | None = None
     """Leaves the road before its first contact, or before it rolls over where it has none."""
+    beyond: bool = False
+    """Passes a junction before it leaves the road."""
     moves: tuple[Move, ...] = ()
     """The moves before that contact in order, where they lead to more than one side: off the road, back, across."""
     spin: Spin | None = None

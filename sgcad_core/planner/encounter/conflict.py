@@ -185,9 +185,11 @@ class Conflicts:
     def _station_for(self, one: Actor, driver: Actor) -> float:
         """The station of a driver's course at which a pedestrian or an object is met."""
         course, length = self.courses[driver.id], size_m(driver)[0]
-        if departs(driver.maneuver, self._told(driver, one).departs):
+        told = self._told(driver, one)
+        if departs(driver.maneuver, told.departs):
             leaving = driver.model_copy(update={"maneuver": "departing_road_right"})
-            return departure_station(course, driver.maneuver, preferred_station(leaving, course, length))
+            usual = preferred_station(leaving, course, length)
+            return departure_station(course, driver.maneuver, usual, beyond=told.beyond)
         if one.record.walks:
             return crosswalk_station(driver, course, length, one)
         return preferred_station(driver, course, length)

@@ -34,6 +34,8 @@ _STILL_S = 1.0
 """Time on its undisturbed line before it leaves it."""
 _STAYS: frozenset[Maneuver] = frozenset({"u_turn", "stopped", "parked", "backing"})
 """Maneuvers with a line of their own, or none, from which the road is not left."""
+_BEHIND_JUNCTION_M = 45.0
+"""From a junction that was passed to where the road is left: the way of a swing that begins there."""
 _BEHIND_TURN_M = 12.0
 _LEAST_MEDIAN_M, _BESIDE_M = 0.6, 1.0
 """Width from which a median is one, and how far over the edge of its lanes a vehicle in a narrow one is."""
@@ -54,8 +56,12 @@ def side_of(maneuver: Maneuver, told: DepartureSide | None) -> DepartureSide | N
     return of_maneuver if of_maneuver and told in (None, "either") else told  # type: ignore[return-value]
 
 
-def departure_station(course: Course, maneuver: Maneuver, usual_m: float) -> float:
-    """The station at which a vehicle is off the road: the usual one of its maneuver, or behind its turn."""
+def departure_station(course: Course, maneuver: Maneuver, usual_m: float, *, beyond: bool = False) -> float:
+    """The station at which a vehicle is off the road: the usual one of its maneuver, or behind its turn; `beyond`: it
+    passes its junction first."""
+    passed = [p.exit_m for p in course.passages if p.is_junction and p.entry_m > course.start_m] if beyond else []
+    if passed:
+        return min(passed[0] + _BEHIND_JUNCTION_M, course.end_m)
     return course.turn.exit_m + _BEHIND_TURN_M if course.turn and maneuver in TURNING else usual_m
 
 

@@ -47,6 +47,8 @@ class _CourseReader:
     leaving: DepartureReader = field(default_factory=DepartureReader)
     moves: list[tuple[MoveHeard, Source, int]] = field(default_factory=list)
     """Each with its sentence and its place in it."""
+    passed: bool = False
+    """Whether it went through a junction."""
 
     def add(self, name: str, value: Any, source: Source) -> None:
         """Take a fact of the course unless it is known."""
@@ -150,8 +152,12 @@ def _read_evasion(one: _CourseReader, segment: Segment, text: str, *, early: boo
 
 
 def _read_departure(one: _CourseReader, segment: Segment, text: str) -> None:
+    passes = rule("departures.passes").search(text)
     for move in one.leaving.hear(text):
         one.moves.append((move, Source(segment.number, move.words, move.rule), segment.at + move.at))
+        if move.move.kind == "departs" and (one.passed or (passes and passes.start() < move.at)):
+            one.add("beyond", True, Source(segment.number, move.words, move.rule))
+    one.passed |= passes is not None
     found = one.leaving.found
     one.course = replace(one.course, departs=found.side if found else None)
     if found and found.words in text:

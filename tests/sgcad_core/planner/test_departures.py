@@ -179,3 +179,15 @@ def test_a_vehicle_that_rolls_over_goes_on_past_what_it_struck(firm):
 def replace_thing(behavior, thing):
     """The behavior with another thing that is struck."""
     return behavior.model_copy(update={"actors": (behavior.actors[0], thing)})
+
+
+@pytest.mark.parametrize("beyond", [True, False])
+@pytest.mark.parametrize("behavior", [HITS_TREE, ALONE])
+def test_one_that_passes_a_junction_first_leaves_the_road_behind_it(behavior, beyond):
+    told = CourseTold(departs="right", rolls=True, beyond=beyond)
+    made = plan(behavior, network("four_leg"), courses={"V1": told})
+    car = next(t for t in made.trajectories if t.actor == "V1")
+    line = find_course(network("four_leg"), CAR)
+    off = np.flatnonzero(car.x_m > 2 * line.lane_width_m)
+    assert (car.y_m[off[0]] > 10.0) == beyond
+    assert car.y_m[0] < -10.0
