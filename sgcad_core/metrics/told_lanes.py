@@ -56,7 +56,8 @@ class ToldLane(NamedTuple):
         at = position(graph, steps.lanes[first])
         if at is None or self.center or steps.places[first] == "opposing":
             return False
-        beside = position(graph, steps.lanes[first], self.side) if self.side else at
+        leaves = self.side and at.lanes > 1  # of a lane with no other beside it one only departs
+        beside = position(graph, steps.lanes[first], self.side) if leaves else at
         return beside is not None and self.is_at(beside)
 
     def is_at(self, at: Position) -> bool:

@@ -131,6 +131,11 @@ def test_the_center_turn_lane_is_taken_in_it_only() -> None:
     assert not ToldLane(None, "right").taken(CENTER, lane_steps(CENTER, at(0.0)))
 
 
+def test_one_departs_from_the_only_lane_of_a_direction() -> None:
+    narrow = drawn(leg("S"), leg("N"))
+    assert ToldLane(1, None, side=-1).taken(narrow, lane_steps(narrow, at(0.5 * LANE_M)))
+
+
 def test_a_lane_that_a_change_cannot_leave_on_its_side_is_the_one_it_leads_into() -> None:
     vehicle = read("V1 was traveling north in the right lane and changed lanes to the left into V2.").crash.vehicles[0]
     assert told_lane(vehicle) == ToldLane(None, "right")
