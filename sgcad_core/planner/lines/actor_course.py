@@ -28,6 +28,10 @@ from sgcad_core.units import MPS_PER_MPH
 
 _MADE_UP_RADIUS_M = 7.0
 _MADE_UP_RUN_M = 25.0
+_RUN_OUT_M = 40.0
+"""Way on from the end of a road, over the junction and off the road."""
+_OF_JUNCTION = 3
+_AHEAD = ("straight", "departing_road_left", "departing_road_right")
 _SMOOTH_MPS = 26.0
 _OVER_M = 1.0
 """A line that comes nearer to the center line of a crosswalk crosses it."""
@@ -121,6 +125,8 @@ def find_course(graph: LaneGraph, actor: Actor, gentle_mps2: float = LATERAL_MPS
     if route.made_up_turn_rad:
         notes.append(f"{actor.id}: {route.ways[-1].road} offers no such turn; it turns off the road")
         pieces.append(_Piece(_made_up(pieces[-1].points, route.made_up_turn_rad), len(route.ways), True))
+    elif _runs_out(graph, route, actor):
+        pieces.append(_Piece(_straight_on(pieces[-1].points), len(route.ways), True))
     lane = lanes[route.start]
     usual = actor.speed_mph * MPS_PER_MPH if actor.speed_mph else lane.speed_mps
     smooth = min(usual, _SMOOTH_MPS) * math.sqrt(LATERAL_MPS2 / gentle_mps2)
@@ -155,6 +161,18 @@ def _made_up(before: Floats, turn_rad: float) -> Floats:
     return np.vstack((arc, arc[-1] + _MADE_UP_RUN_M * np.array([math.cos(away), math.sin(away)])))
 
 
+def _runs_out(graph: LaneGraph, route: Route, actor: Actor) -> bool:
+    """Whether the road of an actor ends at a junction that nothing leads on from straight ahead, and it goes on."""
+    goes = actor.exit_road is None and actor.record.wheeled and actor.maneuver in _AHEAD
+    return goes and _degree(graph, route.ways[-1].to_node) >= _OF_JUNCTION
+
+
+def _straight_on(before: Floats) -> Floats:
+    """A straight run off the end of the last lane."""
+    heading = end_heading(before, at_end=True)
+    return np.vstack((before[-1], before[-1] + _RUN_OUT_M * np.array([math.cos(heading), math.sin(heading)])))
+
+
 def _measured(
     graph: LaneGraph, route: Route, lane: Lane, pieces: list[_Piece], more: tuple[tuple[str, ...], float]
 ) -> Course:
@@ -172,7 +190,9 @@ def _measured(
         around = onward in graph.edges and graph.is_around(graph.edges[onward])
         taper = taper_of(graph, way.id)
         cones_m = taper.length_m if taper and taper.onward == onward else 0.0
-        passages.append(Passage(way.to_node, float(a), float(b), _degree(graph, way.to_node) >= 3, around, cones_m))
+        passages.append(
+            Passage(way.to_node, float(a), float(b), _degree(graph, way.to_node) >= _OF_JUNCTION, around, cones_m)
+        )
         turn = passages[-1] if piece.way == route.turn or piece.way == len(route.ways) else turn
     own = next(i for i, p in enumerate(pieces) if p.way == route.start and not p.is_crossing)
     opposite, own_left, left, right, median = _room(graph, route.ways[route.start], lane)

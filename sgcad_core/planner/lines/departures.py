@@ -59,9 +59,9 @@ def side_of(maneuver: Maneuver, told: DepartureSide | None) -> DepartureSide | N
 def departure_station(course: Course, maneuver: Maneuver, usual_m: float, *, beyond: bool = False) -> float:
     """The station at which a vehicle is off the road: the usual one of its maneuver, or behind its turn; `beyond`: it
     passes its junction first."""
-    passed = [p.exit_m for p in course.passages if p.is_junction and p.entry_m > course.start_m] if beyond else []
-    if passed:
-        return min(passed[0] + _BEHIND_JUNCTION_M, course.end_m)
+    crossed = (p for p in course.passages if p.is_junction and course.start_m < p.entry_m and p.exit_m < course.end_m)
+    if beyond and (first := next(crossed, None)):
+        return min(first.exit_m + _BEHIND_JUNCTION_M, course.end_m)
     return course.turn.exit_m + _BEHIND_TURN_M if course.turn and maneuver in TURNING else usual_m
 
 

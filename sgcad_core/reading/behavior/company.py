@@ -1,8 +1,8 @@
 """Road users without a contact that are told ahead of one with a contact: queues, vehicles that are waited for or
 avoided, pedestrians, animals.
 
-Adds them to a behavior in the lane of the one that waits or evades; the planner places them ahead of it. Knows the reading, no
-roads and no motion. What is told elsewhere than ahead is not added.
+Adds them to a behavior in the lane of the one that waits or evades; the planner places them ahead of it. Knows the
+reading, no roads and no motion. What is told elsewhere than ahead is not added.
 """
 
 from __future__ import annotations

@@ -37,6 +37,8 @@ def stem_of(
     said = stem_told(story, vehicles, lead)
     if said:
         return said[0]
+    if runs_out := _stem_run_out(story, vehicles):
+        return runs_out
     meant = _stem_meant(story, vehicles)
     if meant:
         return meant
@@ -60,6 +62,18 @@ def _stem_of_paths(vehicles: Sequence[VehicleFacts], halted: Sequence[Compass], 
             return turned(v.heading, side)
         if v.exit_heading and v.heading and between(v.heading, v.exit_heading) in (90, 270):
             return v.exit_heading
+    return None
+
+
+def _stem_run_out(story: Sequence[Statement], vehicles: Sequence[VehicleFacts]) -> Compass | None:
+    """The leg on which a lone vehicle comes that leaves the road straight ahead, where its own road ends."""
+    moving = [v for v in vehicles if v.maneuver != "parked"]
+    if len(moving) != 1 or not moving[0].heading or QUARTER_DEG.get(moving[0].maneuver):
+        return None
+    for t in story:
+        found = rule("junction.runs_out").search(t.text)
+        if found and compass_of(found["side"] or "") in (None, moving[0].heading):
+            return turned(moving[0].heading, 180)
     return None
 
 

@@ -90,8 +90,9 @@ def test_in_the_intersection_is_within_the_ends_of_the_lanes(crossing, place, in
 
 
 @pytest.mark.parametrize(("side", "place", "fits"), [
-    ("SW", (-12.0, -12.0), True), ("SW", (-10.0, -25.0), True), ("SW", (0.5, -28.0), False), ("SW", (-12.0, 12.0), False),
-    ("SW", (12.0, -12.0), False), ("W", (-10.0, -25.0), True), ("S", (-25.0, -10.0), True), ("E", (-10.0, -25.0), False),
+    ("SW", (-12.0, -12.0), True), ("SW", (-10.0, -25.0), True), ("SW", (0.5, -28.0), False),
+    ("SW", (-12.0, 12.0), False), ("SW", (12.0, -12.0), False), ("W", (-10.0, -25.0), True),
+    ("S", (-25.0, -10.0), True), ("E", (-10.0, -25.0), False),
 ])  # fmt: skip
 def test_a_corner_is_one_quarter_of_the_junction(crossing, side, place, fits) -> None:
     found = rest_errors(RestTold(where="off_road", side=side), np.array([[*place, 0.0]]), 0.0, crossing)

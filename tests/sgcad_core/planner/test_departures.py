@@ -191,3 +191,18 @@ def test_one_that_passes_a_junction_first_leaves_the_road_behind_it(behavior, be
     off = np.flatnonzero(car.x_m > 2 * line.lane_width_m)
     assert (car.y_m[off[0]] > 10.0) == beyond
     assert car.y_m[0] < -10.0
+
+
+@pytest.mark.parametrize("behavior", [HITS_TREE, ALONE])
+def test_one_whose_road_ends_at_a_junction_goes_on_straight_over_it(behavior):
+    ahead = behavior.model_copy(update={
+        "actors": tuple(a.model_copy(update={"exit_road": None}) for a in behavior.actors),
+    })  # fmt: skip
+    graph = network("tee")
+    told = {} if behavior.contacts else {"V1": CourseTold(departs="N", rolls=True)}
+    made = plan(ahead, graph, courses=told)
+    car = next(t for t in made.trajectories if t.actor == "V1")
+    line = find_course(graph, ahead.actors[0])
+    assert line.turn is not None
+    assert car.y_m[0] < -15.0 < 8.0 < car.y_m[-1], "it stays before the junction"
+    assert abs(car.x_m[-1] - car.x_m[0]) < 10.0

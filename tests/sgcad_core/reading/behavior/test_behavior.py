@@ -46,8 +46,10 @@ def test_who_faces_one_way_and_backs_comes_from_the_side_that_it_faces() -> None
 
 
 def test_who_faces_along_a_road_without_a_junction_backs_up_in_its_own_lane() -> None:
-    told = "V1 was traveling east. V2 was behind V1. V1 stopped in the road and began to move in reverse. The back of " \
-           "V1 struck the front of V2."  # fmt: skip
+    told = (
+        "V1 was traveling east. V2 was behind V1. V1 stopped in the road and began to move in reverse. The back of V1 "
+        "struck the front of V2."
+    )
     found = _behavior(told, PLAIN)
     assert (_actor(found, "V1").road, _actor(found, "V1").direction, _actor(found, "V1").exit_road) == (
         _actor(found, "V2").road, _actor(found, "V2").direction, None,
