@@ -26,11 +26,16 @@ def lanes(text: str) -> tuple[int | None, ...]:
     ("V1 was northbound and changed lanes to the left. V2 was northbound.", (1, 2)),
     ("V1 was northbound in the middle lane and changed lanes to the left. V2 was northbound.", (2, 3)),
     ("V1 was northbound on I-5 in the number 1 lane. V2 was northbound in the number 3 lane.", (3, 1)),
-    ("V1 was northbound in the number 1 lane. V2 was northbound in the number 3 lane.", (3, 1)),
-    ("V1 was northbound in the number 1 lane. V2 was northbound in the number 3 lane. They contacted.", (1, 3)),
+    ("V1 was northbound in the number 1 lane. V2 was northbound in the number 3 lane.", (1, 3)),
 ])  # fmt: skip
 def test_lanes_are_as_told(text: str, found: tuple[int, ...]) -> None:
     assert lanes(text + ROAD + SIDES) == found
+
+
+def test_a_number_counts_from_the_median_where_no_investigator_writes() -> None:
+    text = "V1 was northbound in the number 1 lane. V2 was northbound in the number 3 lane." + ROAD
+    assert lanes(text + " V1 sideswiped V2. It was dry and daylight.") == (3, 1)
+    assert lanes(text + " V1 contacted V2. It was dry and daylight.") == (1, 3)
 
 
 def test_one_that_pulls_out_behind_another_one_starts_in_its_lane() -> None:
