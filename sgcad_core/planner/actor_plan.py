@@ -62,6 +62,8 @@ class Role:
     """Whether the other one is parked beside the lanes."""
     other_lost: bool = False
     """Whether it states that of the other one."""
+    other_moves_up_m: float = 0.0
+    """How far the other one moves up to its stop."""
     pushed: bool = False
     """Whether it stands until right before the contact, and is then set rolling into the other one."""
     told: CourseTold = field(default_factory=CourseTold)
@@ -221,10 +223,8 @@ def speed_there(role: Role) -> float:
 
 
 def mismatch(role: Role) -> float:
-    """From the wanted side's bearing to that from which the other one comes, radians in [-pi, pi].
-
-    Seen in the actor's own frame as both pass the meeting place at their usual speeds.
-    """
+    """From the wanted side's bearing to that from which the other one comes, radians in [-pi, pi], in its own frame as
+    both pass the meeting place at their usual speeds."""
     if role.side is None or role.actor.record.thing:
         return 0.0
     bearing = _bearing_along(role) if along_with(role) else _bearing_across(role)
@@ -277,9 +277,9 @@ def starts_at_m(role: Role, pacing: Pacing) -> float | None:
 
 def start_m(role: Role) -> float:
     """The station at which an actor that starts from rest stands: at its line, or behind the one that it runs into."""
-    queued_m = (role.size[0] + _QUEUE_M) * _waits_behind(role)
+    queued_m = (role.size[0] + _QUEUE_M + role.other_moves_up_m) * _waits_behind(role)
     if role.course.turn is not None:
-        return stop_m(role.course.turn.entry_m, role.size[0]) - queued_m
+        return stop_m(role.course.turn.entry_m - role.course.queued_m, role.size[0]) - queued_m
     return line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0) - queued_m
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.planner.actor_plan import Role, is_standing, speed_there
+from sgcad_core.planner.encounter.arrival import MOVES_UP_M
 from sgcad_core.planner.encounter.maneuver_choices import UNTOLD
 from sgcad_core.planner.encounter.meeting_place import TURNING, Place, meeting_places, preferred_station
 from sgcad_core.planner.encounter.motion_options import (
@@ -248,6 +249,7 @@ def _facing_other(role: Role, other: Role) -> Role:
         other_road=other.actor.road,
         other_spins=bool(other.spins),
         other_lost=other.told.lost_control,
+        other_moves_up_m=MOVES_UP_M if other.told.comes == "moves_up" else 0.0,
         other_long=other.actor.record.thing and is_long(other.size),
         other_leaves=_leaves(other),
     )
