@@ -33,6 +33,8 @@ _QUEUE_M = 2.0
 """Between two that start from rest one behind the other."""
 _AGAINST, _ONE_WAY_RAD = 0.8, 0.6
 """Cosine of the angle between two that come against each other; angle between two that drive in one direction."""
+_SLIGHT_MPS = 6.5
+"""Of two whose ways cross in a slight blow, at most."""
 _STEEP_DEG = 60.0
 """Bearing of a vehicle alongside that is to be hit with the front."""
 
@@ -168,8 +170,7 @@ class Drift(NamedTuple):
             c, s = math.cos(heading), math.sin(heading)
             by = np.array([self.ahead_m * c - self.left_m * s, self.ahead_m * s + self.left_m * c])
             return base.displaced(ramp(base.s_m, self.end_m - self.length_m, self.length_m)[:, None] * by)
-        moves = self.left_m or self.before_m or self.earlier
-        return base.moved(self.profile(base.s_m)) if moves else base
+        return base.moved(self.profile(base.s_m)) if self.left_m or self.before_m or self.earlier else base
 
 
 class Pacing(NamedTuple):
@@ -209,7 +210,8 @@ def usual_speed(role: Role) -> float:
         return max(actor.speed_mph * MPS_PER_MPH, 1.0)
     if actor.maneuver == "backing":
         return 2.5
-    return min(top, 11.0) if actor.maneuver in TURNING else top
+    crosses = role.told.slight and abs(role.place.angle_rad) > _ONE_WAY_RAD and not is_standing(role)
+    return min(top, _SLIGHT_MPS if crosses else 11.0 if actor.maneuver in TURNING else top)
 
 
 def speed_there(role: Role) -> float:
@@ -257,9 +259,8 @@ def _bearing_along(role: Role) -> float | None:
 
 
 def _bearing_across(role: Role) -> float | None:
-    own = speed_there(role)
     angle, other = role.place.angle_rad, role.other_mps
-    ahead, left = own - other * math.cos(angle), -other * math.sin(angle)
+    ahead, left = speed_there(role) - other * math.cos(angle), -other * math.sin(angle)
     return None if math.hypot(ahead, left) < 3.0 else math.atan2(left, ahead)
 
 

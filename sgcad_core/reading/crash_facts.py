@@ -86,6 +86,8 @@ class CrashFacts:
     light: Light | None = None
     weather: Weather | None = None
     surface: Surface | None = None
+    slight: bool = False
+    """Whether all that is told of the blow speaks of a slight one."""
     courses: Courses = field(default_factory=dict)
     """Evasion, spin and rest by vehicle, of those of which anything is told."""
     impacts: tuple[ImpactTold, ...] = ()
@@ -109,9 +111,9 @@ class CrashFacts:
         told = {
             v.id: replace(
                 self.courses.get(v.id, CourseTold()), from_rest=v.from_stop, straddles=v.straddles,
-                comes=v.comes if v.maneuver == "stopped" else None,
+                comes=v.comes if v.maneuver == "stopped" else None, slight=self.slight,
             )
-            for v in self.vehicles if v.from_stop or v.straddles or v.comes
+            for v in self.vehicles if v.from_stop or v.straddles or v.comes or self.slight
         }  # fmt: skip
         return {**self.courses, **told, **self._departing(told)}
 
@@ -255,6 +257,7 @@ def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions, timelin
         sky.light,
         sky.weather,
         sky.surface or _SURFACE.get(sky.weather),
+        slight=sky.slight and crash.roster.counted and crash.near is None,
         near_crash=_near(crash) if contacts else None,
         courses=crash.course.courses,
         impacts=tuple(read.impact for read in crash.impacts),

@@ -84,6 +84,8 @@ class CourseTold:
     """The hand on which the lane lies over whose line it stands at its first contact."""
     comes: ComesTo | None = None
     """How it comes to the stop at which it stands at its first contact; None: it is only told to stand."""
+    slight: bool = False
+    """Whether all that is told of the contact speaks of a slight one."""
     brakes: bool = False
     """Before its first contact."""
     steers: Steering | None = None
