@@ -86,6 +86,8 @@ class CourseTold:
     """How it comes to the stop at which it stands at its first contact; None: it is only told to stand."""
     slight: bool = False
     """Whether all that is told of the contact speaks of a slight one."""
+    inside: bool = False
+    """Drives into a junction before its first contact."""
     brakes: bool = False
     """Before its first contact."""
     steers: Steering | None = None

@@ -159,7 +159,13 @@ class Conflicts:
         """What is told of an actor; its way off the road leads to things, not to others on the road."""
         told = self.told.get(actor.id, CourseTold())
         side = side_of(actor.maneuver, told.departs) if other.record.thing else None
-        return told if side == told.departs else replace(told, departs=side)
+        inside = self._inside(actor, other)
+        same = (side, inside) == (told.departs, told.inside)
+        return told if same else replace(told, departs=side, inside=inside)
+
+    def _inside(self, *pair: Actor) -> bool:
+        """Whether one of a pair is told to have driven into a junction."""
+        return any(self.told.get(actor.id, CourseTold()).inside for actor in pair)
 
     def _goes_on(self, actor: str, contact: Contact) -> bool:
         """Whether an actor on wheels strikes something else after a contact, or rolls over behind a thing."""
@@ -181,7 +187,7 @@ class Conflicts:
                 here = Place(self._station_for(one, other), 0.0, 0.0, 0.0)
                 return here, here
         pair = [(x, self.courses[x.id], size_m(x)[0]) for x in (a, b)]
-        return meeting_places(pair[0], pair[1])
+        return meeting_places(pair[0], pair[1], inside=self._inside(a, b))
 
     def _station_for(self, one: Actor, driver: Actor) -> float:
         """The station of a driver's course at which a pedestrian or an object is met."""

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.planner.actor_plan import Drift, Role, line_m
+from sgcad_core.planner.actor_plan import Drift, Role, along_with, line_m
 from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING, stop_m, turns_off
 from sgcad_core.planner.lines.departures import departs, in_a_mouth, on_the_road
 from sgcad_core.planner.lines.path import Path
@@ -39,7 +39,8 @@ _OUT_OF_ZONE, _UP_TO_LINE = 0.03, 0.15
 _IN_JUNCTION = 0.8
 """Cost of standing in a junction where a stop is told: drivers wait before it."""
 _SLOWED_IN_JUNCTION = 0.4
-"""Cost of an encounter in a junction for one that goes straight on and is told to slow: for what waits before it."""
+"""Cost of an encounter in a junction for one that goes straight on and is told to slow, for what waits before it, and
+for two in a row of which none is told to have driven into it."""
 _UNSTEERED, _STEERED_M = 0.3, 0.4
 """Cost of a stated evasion of which less is visible before the contact."""
 
@@ -58,6 +59,8 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
         penalty = penalty + _NOT_SHOWN * (way * turned < math.radians(16))
     elif maneuver == "straight":
         penalty = penalty + _NOT_SHOWN * (np.abs(turned) > math.radians(28))
+        if not role.told.inside and _in_a_row(role):
+            penalty = penalty + _SLOWED_IN_JUNCTION * _in_junctions(role, path.s_m)
     elif maneuver == "slowing" and not turns_off(role.course) and not role.actor.gore:
         penalty = penalty + _SLOWED_IN_JUNCTION * _in_junctions(role, path.s_m)
     if maneuver in _DRIFTING and drift.left_m:
@@ -102,6 +105,11 @@ def _in_junctions(role: Role, s_m: Floats) -> Floats:
         if crossed.is_junction and not crossed.around:
             found += (s_m > crossed.entry_m - half) & (s_m < crossed.exit_m + half)
     return found
+
+
+def _in_a_row(role: Role) -> bool:
+    """Whether it meets one that drives ahead of it or behind it."""
+    return along_with(role) and {role.side, role.other_side} == {"front", "back"}
 
 
 def out_of_zone(role: Role) -> float:

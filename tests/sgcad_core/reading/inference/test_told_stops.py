@@ -16,6 +16,7 @@ _STRUCK = "A taxi then struck the rear of the van."
     ("The van was stopped at a red light.", None),
     ("The van was traveling north and slowed. The van was stopped at a red light.", "drives_up"),
     ("The van was stopped at a stop sign, moved forward and then stopped to yield to cross traffic.", "moves_up"),
+    ("The van was stopped, waiting to turn right, moved forward and then stopped to yield.", "moves_up"),
     ("The van stopped for a stop sign and then proceeded through the intersection.", None),
 ])  # fmt: skip
 def test_a_stop_is_come_to_where_it_is_told_so(told: str, comes: str | None) -> None:
