@@ -130,8 +130,7 @@ def _point(degrees: float) -> str:
 def _heading(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     if value not in COMPASS:
         return None
-    first = float(made.tracks[who].heading_rad[0])
-    vehicle = made.reading.crash.vehicle(who)
+    first, vehicle = float(made.tracks[who].heading_rad[0]), made.reading.crash.vehicle(who)
     if vehicle is not None and vehicle.maneuver == "backing" and not vehicle.faces:
         first += math.pi  # told is where it backs to
     off = abs(float(wrap_angle(np.array([first - angle_of(value)]))[0]))
@@ -202,6 +201,13 @@ def _from_rest(made: ExecutedCase, who: str, value: Value) -> Comparison:
     slowest = float(speed.min())
     starts = slowest < _STANDS_MPS and float(speed[-2:].max()) > _STANDS_MPS
     return Comparison(starts, round(slowest, 1), f"it never drives slower than {slowest:.1f} m/s before its contact")
+
+
+def _comes(made: ExecutedCase, who: str, value: Value) -> Comparison:
+    """Whether a vehicle drives, then stands until its first contact."""
+    speed = made.tracks[who].speed_mps[: VehicleMotion(made.crash, who).hit]
+    stands = len(speed) > 1 and float(speed[-2]) < _STANDS_MPS
+    return Comparison(stands and float(speed.max()) > _STANDS_MPS, why="it stands from the beginning")
 
 
 def _straddles(made: ExecutedCase, who: str, value: Value) -> Comparison:
@@ -287,9 +293,8 @@ def _exit(made: ExecutedCase, who: str) -> str | None:
 
 _JUDGES: dict[str, Judge] = {
     "heading": _heading, "lane": _lane, "lane_word": _lane, "to_lane": _to_lane,
-    "spin_deg": _spin_deg, "rest.side": _side,
-    "rest.attitude": _attitude, "from_stop": _from_rest, "from_rest": _from_rest,
-    "rolls": _rolls, "straddles": _straddles, "roll_quarters": _roll_quarters,
-    "rolls_to": _rolls_to, "departs": _departs, "origin": _joins(_start), "target": _joins(_exit),
-    "rest.distance_m": _distance, "rest.lane": _rest_lane, "rest.lane_way": _rest_lane,
+    "spin_deg": _spin_deg, "rest.side": _side, "rest.attitude": _attitude, "from_stop": _from_rest,
+    "from_rest": _from_rest, "comes": _comes, "rolls": _rolls, "straddles": _straddles,
+    "roll_quarters": _roll_quarters, "rolls_to": _rolls_to, "departs": _departs, "origin": _joins(_start),
+    "target": _joins(_exit), "rest.distance_m": _distance, "rest.lane": _rest_lane, "rest.lane_way": _rest_lane,
 }  # fmt: skip

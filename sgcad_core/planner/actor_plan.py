@@ -33,6 +33,8 @@ _QUEUE_M = 2.0
 """Between two that start from rest one behind the other."""
 _AGAINST, _ONE_WAY_RAD = 0.8, 0.6
 """Cosine of the angle between two that come against each other; angle between two that drive in one direction."""
+_SLIGHT_MPS = 6.5
+"""Of two whose ways cross in a slight blow, at most."""
 _STEEP_DEG = 60.0
 """Bearing of a vehicle alongside that is to be hit with the front."""
 
@@ -62,6 +64,8 @@ class Role:
     """Whether the other one is parked beside the lanes."""
     other_lost: bool = False
     """Whether it states that of the other one."""
+    other_moves_up_m: float = 0.0
+    """How far the other one moves up to its stop."""
     pushed: bool = False
     """Whether it stands until right before the contact, and is then set rolling into the other one."""
     told: CourseTold = field(default_factory=CourseTold)
@@ -166,8 +170,7 @@ class Drift(NamedTuple):
             c, s = math.cos(heading), math.sin(heading)
             by = np.array([self.ahead_m * c - self.left_m * s, self.ahead_m * s + self.left_m * c])
             return base.displaced(ramp(base.s_m, self.end_m - self.length_m, self.length_m)[:, None] * by)
-        moves = self.left_m or self.before_m or self.earlier
-        return base.moved(self.profile(base.s_m)) if moves else base
+        return base.moved(self.profile(base.s_m)) if self.left_m or self.before_m or self.earlier else base
 
 
 class Pacing(NamedTuple):
@@ -207,7 +210,8 @@ def usual_speed(role: Role) -> float:
         return max(actor.speed_mph * MPS_PER_MPH, 1.0)
     if actor.maneuver == "backing":
         return 2.5
-    return min(top, 11.0) if actor.maneuver in TURNING else top
+    crosses = role.told.slight and abs(role.place.angle_rad) > _ONE_WAY_RAD and not is_standing(role)
+    return min(top, _SLIGHT_MPS if crosses else 11.0 if actor.maneuver in TURNING else top)
 
 
 def speed_there(role: Role) -> float:
@@ -221,10 +225,8 @@ def speed_there(role: Role) -> float:
 
 
 def mismatch(role: Role) -> float:
-    """From the wanted side's bearing to that from which the other one comes, radians in [-pi, pi].
-
-    Seen in the actor's own frame as both pass the meeting place at their usual speeds.
-    """
+    """From the wanted side's bearing to that from which the other one comes, radians in [-pi, pi], in its own frame as
+    both pass the meeting place at their usual speeds."""
     if role.side is None or role.actor.record.thing:
         return 0.0
     bearing = _bearing_along(role) if along_with(role) else _bearing_across(role)
@@ -257,9 +259,8 @@ def _bearing_along(role: Role) -> float | None:
 
 
 def _bearing_across(role: Role) -> float | None:
-    own = speed_there(role)
     angle, other = role.place.angle_rad, role.other_mps
-    ahead, left = own - other * math.cos(angle), -other * math.sin(angle)
+    ahead, left = speed_there(role) - other * math.cos(angle), -other * math.sin(angle)
     return None if math.hypot(ahead, left) < 3.0 else math.atan2(left, ahead)
 
 
@@ -277,9 +278,9 @@ def starts_at_m(role: Role, pacing: Pacing) -> float | None:
 
 def start_m(role: Role) -> float:
     """The station at which an actor that starts from rest stands: at its line, or behind the one that it runs into."""
-    queued_m = (role.size[0] + _QUEUE_M) * _waits_behind(role)
+    queued_m = (role.size[0] + _QUEUE_M + role.other_moves_up_m) * _waits_behind(role)
     if role.course.turn is not None:
-        return stop_m(role.course.turn.entry_m, role.size[0]) - queued_m
+        return stop_m(role.course.turn.entry_m - role.course.queued_m, role.size[0]) - queued_m
     return line_m(role) if role.course.stalls else min(line_m(role), role.place.station_m - 6.0) - queued_m
 
 

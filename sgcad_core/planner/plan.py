@@ -22,6 +22,7 @@ from sgcad_core.planner.aftermath.struck_objects import Strike
 from sgcad_core.planner.aftermath.told_order import ToldOrder, met_in_order, pair_of
 from sgcad_core.planner.bystanders import place_clear
 from sgcad_core.planner.company import stand_ahead, with_company
+from sgcad_core.planner.encounter.arrival import as_they_come
 from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.meeting_place import Place, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option
@@ -202,8 +203,7 @@ class _Cast:
 
     def staged(self, found: Encounter) -> Scene:
         """Both actors with what they tow on the world clock, through the collision."""
-        meeting = found.meeting
-        pair = ((found.first, meeting.first, meeting.first_s), (found.second, meeting.second, meeting.second_s))
+        pair = as_they_come(found)
         contact = math.ceil(lead_of(pair) / STEP_S)
         after = AFTER_S + self._runs_on_s()
         again = frozenset(name for c in self.contacts[1:] for name in (c.striker, c.struck))

@@ -17,11 +17,12 @@ from sgcad_core.reading.contacts.near_crash import NearCrashFacts
 from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.inference.gaps import Gap
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold, end_of, side_met
+from sgcad_core.reading.inference.told_stops import comes_to_stop
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.maneuvers import meant_turn
 from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
 from sgcad_core.reading.text.conditions import Conditions
-from sgcad_core.records.course import Courses, CourseTold, Hand, ImpactTold
+from sgcad_core.records.course import ComesTo, Courses, CourseTold, Hand, ImpactTold
 from sgcad_core.records.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
 from sgcad_core.records.timeline import Act, of_actor, starts_from_rest
 
@@ -64,6 +65,8 @@ class VehicleFacts:
     """Whether it had just started from a stop."""
     straddles: Hand | None = None
     """The hand on which the lane lies over whose line it stands."""
+    comes: ComesTo | None = None
+    """How it comes to the stop at which it stands; None: it is only told to stand."""
     faces: bool = False
     """Whether the told heading is the facing: a vehicle that backs then goes the other way."""
 
@@ -83,6 +86,8 @@ class CrashFacts:
     light: Light | None = None
     weather: Weather | None = None
     surface: Surface | None = None
+    slight: bool = False
+    """Whether all that is told of the blow speaks of a slight one."""
     courses: Courses = field(default_factory=dict)
     """Evasion, spin and rest by vehicle, of those of which anything is told."""
     impacts: tuple[ImpactTold, ...] = ()
@@ -102,12 +107,14 @@ class CrashFacts:
 
     @property
     def driven(self) -> Courses:
-        """The courses as they are planned: with the start from rest of the vehicles that are read so."""
-        acts = {v.id: (v.from_stop, v.straddles) for v in self.vehicles if v.from_stop or v.straddles}
+        """The courses as they are planned: with the start from rest and the stop of the vehicles that are read so."""
         told = {
-            who: replace(self.courses.get(who, CourseTold()), from_rest=starts, straddles=over)
-            for who, (starts, over) in acts.items()
-        }
+            v.id: replace(
+                self.courses.get(v.id, CourseTold()), from_rest=v.from_stop, straddles=v.straddles,
+                comes=v.comes if v.maneuver == "stopped" else None, slight=self.slight,
+            )
+            for v in self.vehicles if v.from_stop or v.straddles or v.comes or self.slight
+        }  # fmt: skip
         return {**self.courses, **told, **self._departing(told)}
 
     def _departing(self, courses: Courses) -> Courses:
@@ -160,6 +167,7 @@ def _vehicle(
         trailer=v.trailer, origin=motion.origin, target=motion.target,
         meant=meant.maneuver if meant else None, from_stop=from_stop,
         straddles=motion.straddles if inferred.maneuvers[v.id] in ("stopped", "parked") else None,
+        comes=comes_to_stop(of_actor(acts, v.id)) if inferred.maneuvers[v.id] == "stopped" else None,
         faces=_faces(motion, inferred.headings.get(v.id)),
     )  # fmt: skip
 
@@ -240,6 +248,8 @@ def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions, timelin
     contacts = tuple(inferred.contacts) or _without_vehicle(crash, inferred, beside)
     if crash.roster.counted:
         vehicles, contacts = _subject_first(vehicles, contacts)
+    if crash.near or not crash.roster.counted:  # labels of numbered reports hold the state at the contact throughout
+        vehicles = tuple(replace(v, comes=None) for v in vehicles)
     return CrashFacts(
         vehicles,
         beside,
@@ -247,6 +257,7 @@ def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions, timelin
         sky.light,
         sky.weather,
         sky.surface or _SURFACE.get(sky.weather),
+        slight=sky.slight and crash.roster.counted and crash.near is None,
         near_crash=_near(crash) if contacts else None,
         courses=crash.course.courses,
         impacts=tuple(read.impact for read in crash.impacts),

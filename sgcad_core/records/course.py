@@ -19,6 +19,8 @@ Attitude = Literal["wheels", "roof", "left", "right"]
 Spin = Literal["clockwise", "counterclockwise"]
 Hand = Literal["left", "right"]
 Steering = Literal["left", "right", "either"]
+ComesTo = Literal["drives_up", "moves_up"]
+"""How a vehicle comes to the stop at which it is struck: it drives there, or it moves up from another stop."""
 RestLane = Literal["own", "left", "right", "middle", "left_turn", "right_turn", "center_turn"]
 """A lane at rest by its word; own: the one in which the vehicle began."""
 DepartureSide = RoadSide | Literal["either"]
@@ -80,6 +82,12 @@ class CourseTold:
     """Stands, then moves on into its first contact."""
     straddles: Hand | None = None
     """The hand on which the lane lies over whose line it stands at its first contact."""
+    comes: ComesTo | None = None
+    """How it comes to the stop at which it stands at its first contact; None: it is only told to stand."""
+    slight: bool = False
+    """Whether all that is told of the contact speaks of a slight one."""
+    inside: bool = False
+    """Drives into a junction before its first contact."""
     brakes: bool = False
     """Before its first contact."""
     steers: Steering | None = None

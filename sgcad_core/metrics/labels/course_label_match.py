@@ -77,7 +77,7 @@ def _all_wrong(told: RestTold) -> dict[str, bool]:
 # ------------------------------------------------------------------ fields
 def _maneuver(label: VehicleLabel, one: VehicleMotion) -> bool | None:
     """Whether the path up to the first contact shows the maneuver; None for `other`."""
-    kind, moved = label.maneuver, one.moved_m()
+    kind, moved = label.maneuver, one.moved_m(label.maneuver)
     aside = float(one.aside[-1] - one.aside[0])
     if (told := maneuver_shown(kind, moved, one.turned_deg())) is not None:
         return told

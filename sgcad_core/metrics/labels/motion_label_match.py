@@ -22,6 +22,8 @@ STILL = ("stopped", "parked")
 STILL_M, STRAIGHT_DEG, TURNED_DEG = 2.0, 30.0, 12.0
 """A smaller displacement is standing, a smaller turn is straight; a turn that a contact cuts short has begun at 12
 degrees."""
+STOOD_S = 1.0
+"""Time for which a vehicle that stopped stands before its first contact at least."""
 _VEHICLE = re.compile(r"V\d+$")
 
 
@@ -105,9 +107,15 @@ def _maneuver_right(vehicle: Mapping[str, Any], paths: Mapping[str, Path], touch
     if path is None:
         return 0.0
     pose = path.pose[path.t_s <= touch.t_s] if touch else path.pose
-    moved = float(np.hypot(*(pose[-1, :2] - pose[0, :2])))
+    moved = way_m(kind, pose, path.t_s[: len(pose)])
     turned = math.degrees(float(wrap_angle(np.diff(pose[:, 2])).sum()))
     return float(bool(maneuver_shown(kind, moved, turned)))
+
+
+def way_m(kind: str | None, pose: Floats, t_s: Floats) -> float:
+    """The displacement over (n, 3) poses that tells a maneuver: of one that stopped, that while it stood."""
+    first = int(np.searchsorted(t_s, t_s[-1] - STOOD_S)) if kind == "stopped" else 0
+    return float(np.hypot(*(pose[-1, :2] - pose[first, :2])))
 
 
 def maneuver_shown(kind: str | None, moved_m: float, turned_deg: float) -> bool | None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from sgcad_core.geometry.distances import nearest_on
 from sgcad_core.geometry.plane import Floats, box_gaps, prolonged, wrap_angle
-from sgcad_core.metrics.labels.motion_label_match import Path
+from sgcad_core.metrics.labels.motion_label_match import Path, way_m
 from sgcad_core.metrics.rest_error import rest_errors
 from sgcad_core.records.course import RestTold
 from sgcad_core.roads.lane_graph import Edge, Lane, LaneGraph
@@ -128,8 +128,9 @@ class VehicleMotion:
         """Heading change up to the contact, left positive."""
         return math.degrees(float(wrap_angle(np.diff(self.before[:, 2])).sum()))
 
-    def moved_m(self) -> float:
-        return float(np.hypot(*(self.before[-1, :2] - self.before[0, :2])))
+    def moved_m(self, kind: str | None) -> float:
+        """The displacement up to the contact that tells a maneuver, metres."""
+        return way_m(kind, self.before, self.path.t_s[: self.hit + 1])
 
     def rest(self, told: RestTold) -> dict[str, bool]:
         """By stated part of the rest whether the last pose is right."""

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.planner.actor_plan import Role, is_standing, speed_there
+from sgcad_core.planner.encounter.arrival import MOVES_UP_M
 from sgcad_core.planner.encounter.maneuver_choices import UNTOLD
 from sgcad_core.planner.encounter.meeting_place import TURNING, Place, meeting_places, preferred_station
 from sgcad_core.planner.encounter.motion_options import (
@@ -158,7 +159,13 @@ class Conflicts:
         """What is told of an actor; its way off the road leads to things, not to others on the road."""
         told = self.told.get(actor.id, CourseTold())
         side = side_of(actor.maneuver, told.departs) if other.record.thing else None
-        return told if side == told.departs else replace(told, departs=side)
+        inside = self._inside(actor, other)
+        same = (side, inside) == (told.departs, told.inside)
+        return told if same else replace(told, departs=side, inside=inside)
+
+    def _inside(self, *pair: Actor) -> bool:
+        """Whether one of a pair is told to have driven into a junction."""
+        return any(self.told.get(actor.id, CourseTold()).inside for actor in pair)
 
     def _goes_on(self, actor: str, contact: Contact) -> bool:
         """Whether an actor on wheels strikes something else after a contact, or rolls over behind a thing."""
@@ -180,7 +187,7 @@ class Conflicts:
                 here = Place(self._station_for(one, other), 0.0, 0.0, 0.0)
                 return here, here
         pair = [(x, self.courses[x.id], size_m(x)[0]) for x in (a, b)]
-        return meeting_places(pair[0], pair[1])
+        return meeting_places(pair[0], pair[1], inside=self._inside(a, b))
 
     def _station_for(self, one: Actor, driver: Actor) -> float:
         """The station of a driver's course at which a pedestrian or an object is met."""
@@ -250,6 +257,7 @@ def _facing_other(role: Role, other: Role) -> Role:
         other_road=other.actor.road,
         other_spins=bool(other.spins),
         other_lost=other.told.lost_control,
+        other_moves_up_m=MOVES_UP_M if other.told.comes == "moves_up" else 0.0,
         other_long=other.actor.record.thing and is_long(other.size),
         other_leaves=_leaves(other),
     )

@@ -74,14 +74,17 @@ def stop_m(line_m: float, length_m: float) -> float:
     return line_m - STOP_LINE_M - length_m / 2
 
 
-def meeting_places(first: tuple[Actor, Course, float], second: tuple[Actor, Course, float]) -> tuple[Place, Place]:
-    """The stations where two courses (with their boxes' lengths) come nearest to each other and to preference."""
+def meeting_places(
+    first: tuple[Actor, Course, float], second: tuple[Actor, Course, float], *, inside: bool = True
+) -> tuple[Place, Place]:
+    """The stations where two courses (with their boxes' lengths) come nearest to each other and to preference; not
+    `inside`: a row meets before its junction."""
     (a, course_a, _), (b, course_b, _) = first, second
     s_a, s_b = _stations(course_a), _stations(course_b)
     p_a, p_b = course_a.path.poses(s_a), course_b.path.poses(s_b)
     apart = np.hypot(p_a[:, None, 0] - p_b[None, :, 0], p_a[:, None, 1] - p_b[None, :, 1])
     wish_a, wish_b = preferred_station(*first), preferred_station(*second)
-    if _queue(a, b, course_a, course_b):
+    if _queue(a, b, (course_a, course_b), inside=inside):
         wish_a, wish_b = _before_junction(wish_a, a, course_a), _before_junction(wish_b, b, course_b)
     cost = 0.5 * apart + _pull(a) * np.abs(s_a - wish_a)[:, None] + _pull(b) * np.abs(s_b - wish_b)[None, :]
     i, j = np.unravel_index(int(np.argmin(cost)), cost.shape)
@@ -111,14 +114,13 @@ def _pull(actor: Actor) -> float:
     return 0.04 if actor.maneuver in STANDING else 0.02
 
 
-def _queue(a: Actor, b: Actor, course_a: Course, course_b: Course) -> bool:
+def _queue(a: Actor, b: Actor, courses: tuple[Course, Course], *, inside: bool) -> bool:
     """Whether both drive the same way and neither turns: they meet before the junction."""
-    same = (
-        a.road == b.road and a.direction == b.direction and not (_goes_around(a, course_a) or _goes_around(b, course_b))
-    )
-    if "slowing" in (a.maneuver, b.maneuver):
-        return same and not any(map(turns_off, (course_a, course_b)))
-    return same and course_a.turn is None and course_b.turn is None
+    around = any(map(_goes_around, (a, b), courses))
+    same = a.road == b.road and a.direction == b.direction and not around
+    if not inside or "slowing" in (a.maneuver, b.maneuver):
+        return same and not any(map(turns_off, courses))
+    return same and all(course.turn is None for course in courses)
 
 
 def turns_off(course: Course) -> bool:

@@ -31,7 +31,7 @@ from sgcad_core.planner.encounter.maneuver_choices import FROM_OTHER_LANE, OTHER
 from sgcad_core.planner.encounter.meeting_place import TURNING, turns_off
 from sgcad_core.planner.encounter.out_of_lanes import OUT, out_of_lanes, stands_out_of_lanes, starts_beside
 from sgcad_core.planner.encounter.pacing_choices import pacings
-from sgcad_core.planner.encounter.place_cost import OUT_OF_GORE, cost_outside, in_junction, misfit, waiting_zone
+from sgcad_core.planner.encounter.place_cost import cost_outside, in_junction, misfit, out_of_zone, waiting_zone
 from sgcad_core.planner.lines.axle_to_box import bent_before, box_path, easiest, offset, skidding, tightest
 from sgcad_core.planner.lines.box_angles import aiming, skids, slides, spins
 from sgcad_core.planner.lines.crossing import implied_crossings
@@ -246,7 +246,7 @@ def standing(option: Option) -> Motion:
     role, base = option.role, option.role.course.path
     path = base.moved(np.full(len(base.s_m), option.drift.left_m)).turned(option.twist.angle_rad)
     time, station = stand(path, role.place.station_m)
-    penalty = cost_outside(path.s_m, *waiting_zone(role), OUT_OF_GORE if role.actor.gore else 0.03)
+    penalty = cost_outside(path.s_m, *waiting_zone(role), out_of_zone(role))
     penalty += in_junction(role, path.s_m)
     kept, thing = not stands_out_of_lanes(role, option.drift.left_m, option.twist.angle_rad), role.actor.record.thing
     return Motion(path, time, station, role.size, penalty, -math.inf, standing=True, fixed=thing, drivable=kept)

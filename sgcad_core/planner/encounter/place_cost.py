@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.planner.actor_plan import Drift, Role, line_m
+from sgcad_core.planner.actor_plan import Drift, Role, along_with, line_m
 from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING, stop_m, turns_off
 from sgcad_core.planner.lines.departures import departs, in_a_mouth, on_the_road
 from sgcad_core.planner.lines.path import Path
@@ -24,7 +24,7 @@ _NOT_SHOWN = 2.0
 _UNMOVED, _MOVED_SHARE = 1.2, 0.7
 """Cost of a lane change that has not begun; none from this share of a body width to the side on, where the bodies still
 overlap by a third."""
-OUT_OF_GORE, _INTO_GORE_M = 0.5, 8.0
+_OUT_OF_GORE, _INTO_GORE_M = 0.5, 8.0
 """Cost of each metre between the encounter and the gore of one actor, and the distance into the gore."""
 _BEFORE_TURN_M = 12.0
 """Distance before a turn at which the box still points along the road: it starts to turn before the junction."""
@@ -32,10 +32,15 @@ _IN_MOUTH = 0.6
 """Cost of an encounter beside the road where another road joins, for one that leaves the road."""
 _WAITS_BEFORE_M = 8.0
 """As near before the stop line of a junction one that stands in the road waits at that line."""
+_QUEUED_M, _MOVED_UP_M = 10.0, 1.5
+"""Distance before that line at which it may stand in a queue; the same of one that moved up to the line."""
+_OUT_OF_ZONE, _UP_TO_LINE = 0.03, 0.15
+"""Cost of each metre away from there."""
 _IN_JUNCTION = 0.8
 """Cost of standing in a junction where a stop is told: drivers wait before it."""
 _SLOWED_IN_JUNCTION = 0.4
-"""Cost of an encounter in a junction for one that goes straight on and is told to slow: for what waits before it."""
+"""Cost of an encounter in a junction for one that goes straight on and is told to slow, for what waits before it, and
+for two in a row of which none is told to have driven into it."""
 _UNSTEERED, _STEERED_M = 0.3, 0.4
 """Cost of a stated evasion of which less is visible before the contact."""
 
@@ -46,7 +51,7 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
     penalty = cost_outside(path.s_m, place - _ZONE_M, place + _ZONE_M, 0.02)
     if role.actor.gore and role.course.passages:
         crossed = role.course.passages[0]
-        penalty = penalty + cost_outside(path.s_m, crossed.entry_m + _INTO_GORE_M, crossed.exit_m, OUT_OF_GORE)
+        penalty = penalty + cost_outside(path.s_m, crossed.entry_m + _INTO_GORE_M, crossed.exit_m, _OUT_OF_GORE)
     turned = path.heading_rad - np.interp(begins_m - _BEFORE_TURN_M, path.s_m, path.heading_rad)
     maneuver = role.actor.maneuver
     if maneuver in TURNING:
@@ -54,6 +59,8 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
         penalty = penalty + _NOT_SHOWN * (way * turned < math.radians(16))
     elif maneuver == "straight":
         penalty = penalty + _NOT_SHOWN * (np.abs(turned) > math.radians(28))
+        if not role.told.inside and _in_a_row(role):
+            penalty = penalty + _SLOWED_IN_JUNCTION * _in_junctions(role, path.s_m)
     elif maneuver == "slowing" and not turns_off(role.course) and not role.actor.gore:
         penalty = penalty + _SLOWED_IN_JUNCTION * _in_junctions(role, path.s_m)
     if maneuver in _DRIFTING and drift.left_m:
@@ -100,6 +107,16 @@ def _in_junctions(role: Role, s_m: Floats) -> Floats:
     return found
 
 
+def _in_a_row(role: Role) -> bool:
+    """Whether it meets one that drives ahead of it or behind it."""
+    return along_with(role) and {role.side, role.other_side} == {"front", "back"}
+
+
+def out_of_zone(role: Role) -> float:
+    """Cost of each metre outside the zone in which a standing actor waits."""
+    return _OUT_OF_GORE if role.actor.gore else _UP_TO_LINE if role.told.comes == "moves_up" else _OUT_OF_ZONE
+
+
 def waiting_zone(role: Role) -> tuple[float, float]:
     """Stations between which a standing actor plausibly waits; in a gore, those of the gore."""
     if role.actor.gore:
@@ -108,4 +125,5 @@ def waiting_zone(role: Role) -> tuple[float, float]:
     ahead = [p.entry_m - role.course.queued_m for p in role.course.passages if p.is_junction and p.entry_m > place]
     near = stop_m(min(ahead, default=math.inf), role.size[0])
     line = near if near - place < _WAITS_BEFORE_M else line_m(role)
-    return (line - 10.0, line + 0.5) if role.course.passages else (place - 20.0, place + 20.0)
+    room_m = _MOVED_UP_M if role.told.comes == "moves_up" else _QUEUED_M
+    return (line - room_m, line + 0.5) if role.course.passages else (place - 20.0, place + 20.0)

@@ -53,7 +53,7 @@ def with_company(behavior: BehaviorSpec, reading: Reading) -> BehaviorSpec:
         leader = _leader(told, row)
         if leader is None or len(actors) >= _MOST or told.name in {a.id for a in actors}:
             continue
-        name = told.name or _free(taken, told.letter)
+        name = told.name or free_name(taken, told.letter)
         taken.add(name)
         actors.append(_ahead(told.kind, name, leader))
     return behavior.model_copy(update={"actors": tuple(actors)})
@@ -78,8 +78,8 @@ def _leader(told: _Told, row: list[Actor]) -> Actor | None:
 
 def _told(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:
     """All of them in the sentences up to the first contact; a queue where no further vehicle is numbered."""
-    last = max((f.start for f in reading.facts if f.field.startswith("contacts.0") and f.start is not None),
-               default=len(reading.narrative))  # fmt: skip
+    hits = [f.start for f in reading.facts if f.field.startswith("contacts.0") and f.start is not None]
+    last = max([*hits, *(s.start for s in reading.sentences if s.role == "impact")], default=len(reading.narrative))
     alone = sum(a.record.drives for a in behavior.actors) <= _PAIR
     walkers = any(a.record.exposed for a in behavior.actors)
     story = [s for s in reading.sentences if s.role in (*STORY_ROLES, "road") and s.start <= last]
@@ -102,11 +102,11 @@ def _vehicles(sentence: Sentence) -> Iterator[_Told]:
         where = match["where"] or ""
         in_front = "in front of" in where or "ahead of" in where
         if in_front or not elsewhere.search(f"{match['words']} {where}"):
-            yield _Told(_vehicle_kind(match["words"]), match["id"], _named_before(sentence.text, match.start()))
+            yield _Told(vehicle_kind(match["words"]), match["id"], _named_before(sentence.text, match.start()))
     for match in rule("company.waits_for_another").finditer(sentence.text):
         here = "same" in (match["where"] or "")
         if here or not elsewhere.search(match[0].replace(" behind ", " ", 1)):
-            yield _Told(_vehicle_kind(match["kind"]), None, _named_before(sentence.text, match.start()))
+            yield _Told(vehicle_kind(match["kind"]), None, _named_before(sentence.text, match.start()))
 
 
 def _people(sentence: Sentence) -> Iterator[_Told]:
@@ -130,7 +130,7 @@ def _avoided_vehicles(sentence: Sentence) -> Iterator[_Told]:
     for match in rule("company.avoided_vehicle").finditer(sentence.text):
         if not rule("company.elsewhere").search(f"{match['words']} {match['where'] or ''}"):
             who = _named_before(sentence.text, match.start())
-            yield _Told(_vehicle_kind(match["kind"]), None, who, avoided=True)
+            yield _Told(vehicle_kind(match["kind"]), None, who, avoided=True)
 
 
 def _named_before(text: str, end: int) -> str | None:
@@ -138,11 +138,12 @@ def _named_before(text: str, end: int) -> str | None:
     return next(reversed(MENTION.findall(text[:end])), None)
 
 
-def _vehicle_kind(words: str) -> ActorKind:
+def vehicle_kind(words: str) -> ActorKind:
     """The kind of a vehicle from its words; a car where these name none."""
     kind = kind_of(words, None)[0]
     return kind if actor_kind(kind).drives else "car"
 
 
-def _free(taken: set[str], letter: str) -> str:
+def free_name(taken: set[str], letter: str) -> str:
+    """The first number of a letter that is not taken."""
     return next(f"{letter}{n}" for n in range(1, 99) if f"{letter}{n}" not in taken)

@@ -71,15 +71,18 @@ def _set_going(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMen
     """Sets a vehicle going that stood, where the first contact as told cannot come about otherwise.
 
     Its front strikes a flank, or its flank is struck by one that goes straight on across its way. Of 18
-    such vehicles in a sample of coded reports 16 were coded as moving.
+    such vehicles in a sample of coded reports 16 were coded as moving. Of an account in order the last act before the
+    contact stands, unless its front strikes the flank of one that goes straight on across its way.
     """
-    ordered = crash.roster.counted  # of an account in order the last act before the contact stands
-    for b in pairs[:1] if not (crash.near or ordered) else ():
+    ordered = crash.roster.counted
+    for b in pairs[:1] if not crash.near else ():
         for v, other in ((b.actor, b.other), (b.other, b.actor)):
             own, theirs = (end_of(zone) for zone in b.areas_of(v))
             if inferred.maneuvers[v] != "stopped" or "back" in (own, theirs):
                 continue
             strikes = v == b.actor and not b.mutual and own == "front" and theirs in ("left", "right")
+            if ordered and not (strikes and _crosses(inferred, other, v)):
+                continue
             if strikes or (theirs == "front" and own in ("left", "right") and _crosses(inferred, other, v)):
                 meant = meant_turn(crash.motions[v])
                 inferred.maneuvers[v] = meant.maneuver if meant else "straight"

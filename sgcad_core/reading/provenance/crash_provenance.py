@@ -149,6 +149,9 @@ def _motion(builder: FactBuilder, v: VehicleFacts, read: StageResults) -> Iterat
     if v.from_stop:
         stop = motion.cue("stopped") or motion.cue("parked")
         yield builder.stated(f"{at}.from_stop", True, stop.source if stop else None)
+    if v.comes:
+        stop = motion.cue("stopped") or motion.cue("slowing")
+        yield builder.stated(f"{at}.comes", v.comes, stop.source if stop else None)
     if v.straddles:
         yield builder.stated(f"{at}.straddles", v.straddles, motion.sources.get("straddles"))
 

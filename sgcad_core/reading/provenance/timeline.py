@@ -113,10 +113,10 @@ def _motion(
         fact = builder.stated("act", kind, cue.source)
         phase: Phase = "after" if after else "before"
         yield cue.number, cue.at, _act(fact, cue.source, vehicle, kind, phase, meant=meant, decides=decides)
-        stood = kind in STANDING and not meant
+        stood = stood if meant else kind in STANDING
     if vehicle in inferred.started:
         fact = builder.inferred("act", "starts", "infer.set_going")
-        yield impact, -1, _act(fact, None, vehicle, "starts", "before", decides=True)
+        yield impact, _NO_SENTENCE, _act(fact, None, vehicle, "starts", "before", decides=True)
 
 
 def _kind_of(cue: ManeuverCue, stood: bool) -> tuple[ActKind | None, bool]:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.normalise import Sentence
+from sgcad_core.reading.text.severity import is_slight
 from sgcad_core.records.specs import Light, Surface, Weather
 
 
@@ -19,6 +20,8 @@ class Conditions(NamedTuple):
     surface: Surface | None = None
     sources: Mapping[str, Source] = {}
     """Where each was read."""
+    slight: bool = False
+    """Whether all that is told of the blow speaks of a slight one."""
 
 
 _LESS = ("interview", "injury", "police", "restraint", "towing", "health")
@@ -34,7 +37,7 @@ def conditions(sentences: Iterable[Sentence]) -> Conditions:
     less = [s for s in less if sum(_told(kind, [s]) is not None for kind in _KINDS) > 1]
     found = {kind: _told(kind, own) or _told(kind, less) for kind in _KINDS}
     values = {role: told[0] for role, told in found.items() if told}
-    return Conditions(**values, sources={role: told[1] for role, told in found.items() if told})
+    return Conditions(**values, slight=is_slight(told), sources={role: told[1] for role, told in found.items() if told})
 
 
 def _told(role: str, said: list[Sentence]) -> tuple[Any, Source] | None:

@@ -107,3 +107,13 @@ def test_phases_never_run_backward_and_every_place_is_in_the_text(told: list[tup
 def test_a_report_that_tells_only_the_pair_is_refused(text: str, thin: bool) -> None:
     gap = read(text).crash.gap
     assert (gap is not None and "only who touched whom" in gap.reason) == thin
+
+
+def test_one_of_a_report_without_numbers_that_strikes_a_flank_across_its_way_has_started() -> None:
+    found = read(
+        "A van stopped for a stop sign, heading south. The van then proceeded through it, and a taxi that "
+        "was stopped facing east struck the right side of the van with its front."
+    )
+    taxi = found.crash.vehicle("V2")
+    assert taxi is not None
+    assert (taxi.maneuver, taxi.from_stop) == ("straight", True)

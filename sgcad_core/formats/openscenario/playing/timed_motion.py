@@ -18,6 +18,9 @@ from sgcad_core.geometry.plane import Floats, wrap_angle
 EPSILON = 1e-9
 MAX_S = 300.0
 """Longest scenario that is played."""
+BLOW_MPS2 = 15.0
+"""More than any vehicle brakes: the vertex is that of a blow."""
+_STANDS_MPS = 0.02
 
 
 class BoxShape(NamedTuple):
@@ -154,12 +157,16 @@ def _eased_piece(ends: Floats, speed_mps: float, dt_s: float) -> tuple[Floats, f
 
 
 def _speeds(times_s: Floats, points: Floats, t_s: Floats) -> Floats:
-    """Speeds at times: those of the segment; at a vertex the mean of its two segments'."""
-    segment = np.hypot(*np.diff(points, axis=0).T) / np.maximum(np.diff(times_s), 1e-6)
+    """Speeds at times: those of the segment; at a vertex the mean of its two segments', in a blow and behind a stop
+    that before it."""
+    lasts = np.maximum(np.diff(times_s), 1e-6)
+    segment = np.hypot(*np.diff(points, axis=0).T) / lasts
     last = len(segment) - 1
     before = np.clip(np.searchsorted(times_s, t_s - 1e-6) - 1, 0, last)
     after = np.clip(np.searchsorted(times_s, t_s + 1e-6) - 1, 0, last)
-    speeds: Floats = (segment[before] + segment[after]) / 2
+    blow = np.abs(segment[after] - segment[before]) > BLOW_MPS2 * np.minimum(lasts[after], lasts[before])
+    stood = segment[before] < _STANDS_MPS
+    speeds: Floats = np.where(blow | stood, segment[before], (segment[before] + segment[after]) / 2)
     return speeds
 
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from sgcad_core.formats.openscenario.playing.timed_motion import TimedMotion
 from tests.sgcad_core.formats.xosc_samples import at, event, follow, row, scenario, speed_action, timing, v1, world
 
 V1 = {"V1": world(0, 0)}
@@ -96,3 +97,13 @@ def test_an_untimed_trajectory_is_driven_at_the_own_speed():
     assert row(motion, 1.0) == pytest.approx((10, 0, 0, 10)), "still where it was before the action"
     assert row(motion, 1.05) == pytest.approx((0.5, 0, 0, 10))
     assert row(motion, 2.5) == pytest.approx((10, 5, math.pi / 2, 10))
+
+
+def test_the_speed_at_a_blow_is_that_before_it() -> None:
+    times = np.arange(0.0, 2.01, 0.05)
+    x = np.where(times < 1.0, 0.0, 8.0 * (times - 1.0))
+    struck = TimedMotion(times, np.column_stack((x, 0 * x)), 0 * x, (0, 0.05))
+    assert struck.speed(20) == pytest.approx(0.0)
+    assert struck.speed(21) == pytest.approx(8.0)
+    braking = TimedMotion(times, np.column_stack((10 * times - 2.0 * times**2, 0 * x)), 0 * x, (0, 0.05))
+    assert braking.speed(20) == pytest.approx(6.0, abs=0.01)

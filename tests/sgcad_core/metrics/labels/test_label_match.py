@@ -10,7 +10,7 @@ import pytest
 
 from sgcad_core.formats.sumo.net_xml import lanes_between
 from sgcad_core.metrics.labels.label_match import GeneratedCase, compare, truth_figures
-from sgcad_core.metrics.labels.motion_label_match import Path, first_touch, maneuver_shown
+from sgcad_core.metrics.labels.motion_label_match import Path, first_touch, maneuver_shown, way_m
 from sgcad_core.roads.lane_graph import road_counts
 
 SHARED = File(__file__).resolve().parents[5] / "shared"
@@ -178,3 +178,13 @@ def test_a_way_and_a_turn_show_a_maneuver(
     kind: str | None, moved_m: float, turned_deg: float, verdict: bool | None
 ) -> None:
     assert maneuver_shown(kind, moved_m, turned_deg) is verdict
+
+
+@pytest.mark.parametrize(
+    ("kind", "stood_s", "way"), [("stopped", 1.2, 0.0), ("stopped", 0.0, 5.0), ("parked", 1.2, 15.0)]
+)
+def test_of_a_stop_only_the_time_counts_in_which_it_stood(kind: str, stood_s: float, way: float) -> None:
+    t_s = np.arange(0.0, 3.01, 0.05) + 0.0
+    t_s = np.append(t_s, t_s[-1] + stood_s) if stood_s else t_s
+    x_m = np.minimum(5.0 * t_s, 15.0)
+    assert way_m(kind, np.column_stack((x_m, 0 * x_m, 0 * x_m)), t_s) == pytest.approx(way, abs=0.3)
