@@ -181,7 +181,7 @@ def events(
         for b in hits
         if subject in (b.actor, b.other) and {b.actor, b.other} <= set(roster.ids) and not b.summary
     )
-    moved = read_motions(named.statements, before_evasion(segments) if of_study else segments, roster, next(met, None))
+    moved = read_motions(named.statements, before_evasion(segments, near) if of_study else segments, roster, next(met, None))
     course = CoursesRead() if near else courses_told(named.statements, cues, roster, _coded_loss(moved), event)
     pairs = {frozenset((b.actor, b.other)) for b in struck if b.other in roster.ids}
     later = () if near else later_impacts(named.statements, cues, roster, struck)

@@ -103,16 +103,20 @@ def _missed(statement: Statement, roster: Roster) -> tuple[ContactMention, ...]:
     return ()
 
 
-def before_evasion(segments: Iterable[Segment]) -> tuple[Segment, ...]:
+def before_evasion(segments: Iterable[Segment], near: NearMiss | None = None) -> tuple[Segment, ...]:
     """Segments cut before the evasion: the rest is the approach of the vehicle.
 
-    Braking to avoid a contact is no maneuver before it.
+    Braking to avoid a contact is no maneuver before it; that of one who is nearly struck is, unless it avoids something.
     """
-    return tuple(map(_before_evasion, segments))
+    hits = near.contact_mentions if near else ()
+    struck = {hit.other for hit in hits} - {hit.actor for hit in hits}
+    return tuple(_before_evasion(segment, yields=set(segment.subjects) <= struck) for segment in segments)
 
 
-def _before_evasion(segment: Segment) -> Segment:
+def _before_evasion(segment: Segment, *, yields: bool) -> Segment:
     act = rule("near_events.act").search(segment.text)
+    if act and yields and not rule("near_events.avoids").search(segment.text, act.start()):
+        act = None
     text = segment.text[: act.start()] if act else segment.text
     return segment._replace(text=text, role="approach" if segment.role in _READ else segment.role)
 

@@ -62,3 +62,20 @@ def test_a_queue_of_numbered_vehicles_is_not_drawn_twice():
         f"V3, V1 and V2 were traveling north. V3 was ahead in stopped traffic. {BEHIND} V1 then struck the rear of V3."
     )
     assert joined(text)[0] == []
+
+
+FROM_BEHIND = "The following vehicle nearly hits the subject vehicle in the rear."
+
+
+@pytest.mark.parametrize(("text", "expected"), [
+    ("Subject slows behind the lead vehicle, which slows.", [("V3", "car", "slowing")]),
+    ("Subject slows because the lead truck is stopped.", [("V3", "truck", "stopped")]),
+    ("Subject slows down for a light.", []),
+])  # fmt: skip
+def test_the_one_ahead_joins_where_the_subject_is_met_from_behind(text, expected):
+    assert joined(f"{text} {FROM_BEHIND}")[0] == expected
+
+
+def test_the_one_ahead_has_a_number_of_its_own_in_the_sentences():
+    reading = read(f"Subject slows behind the lead vehicle. {FROM_BEHIND}")
+    assert [reading.named_in(sentence) for sentence in reading.sentences] == [{"V1", "V3"}, {"V1", "V2"}]
