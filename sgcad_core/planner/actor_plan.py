@@ -72,6 +72,7 @@ class Role:
     """Whether the other one is a thing that runs along the road."""
     other_leaves: int = 0
     """The hand on which the other one leaves the road: 1 left, -1 right; 0: it stays on it."""
+    untouched: bool = False  # touches nothing, and nothing is near it
     leaves_lanes: bool = False
     """Whether it may drive out of its lanes untold: where the pair meets in no other way."""
 

@@ -1,7 +1,8 @@
 """Road users without a contact ahead of one with a contact: traffic that it waits for or follows, and pedestrians.
 
-One that slows drives ahead of that vehicle on its way. A stopped vehicle in the lane of a vehicle of the contact, and a pedestrian on its road, are placed ahead of all that
-drive there, as far as these come. Works on a settled scene. Knows actors, courses and tracks.
+One that slows drives ahead of that vehicle on its way. A stopped vehicle in the lane of a vehicle of the contact, and a
+pedestrian on its road, are placed ahead of all that drive there, as far as these come. Works on a settled scene. Knows
+actors, courses and tracks.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ from sgcad_core.planner.company import stand_ahead, with_company
 from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.meeting_place import Place, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option
-from sgcad_core.planner.encounter.near_miss import as_near_miss
+from sgcad_core.planner.encounter.near_miss import near_encounter
 from sgcad_core.planner.encounter.off_center import is_passed
 from sgcad_core.planner.encounter.pacing_choices import ROLLS_IN
 from sgcad_core.planner.encounter.pairing import Encounter
@@ -127,7 +127,8 @@ class _Cast:
         """Those of which several moves are told, or that leave the road and touch nothing."""
         alone = not (self.possible or self.behavior.near_crash)
         told = ((a, self.told.get(a.id, CourseTold())) for a in self.behavior.actors)
-        return [a.id for a, its in told if its.moves or (alone and departs(a.maneuver, its.departs))]
+        off = [(a.id, its.moves, its.lost_control or departs(a.maneuver, its.departs)) for a, its in told]
+        return [who for who, moves, leaves in off if moves or (alone and leaves)]
 
     @cached_property
     def possible(self) -> list[Contact]:
@@ -191,12 +192,7 @@ class _Cast:
         """A conflict with its evasion; None where the two cannot be brought near or cannot be parted."""
         if not self.usable((near.conflict,)):
             return None
-        found, notes = as_near_miss(conflicts.as_they_drive(near.conflict), near)
-        if found is None and (started := [who for who, told in conflicts.told.items() if told.from_rest]):
-            rolling = {who: replace(told, from_rest=False) for who, told in conflicts.told.items()}
-            course = replace(conflicts, told=rolling).as_they_drive(near.conflict)
-            found, notes = as_near_miss(course, near)
-            notes = (*(f"{who} is not seen starting from rest" for who in started), *notes)
+        found, notes = near_encounter(conflicts, near)
         self.notes += notes
         return found
 
@@ -288,8 +284,10 @@ class _Cast:
     def alone(self, name: str) -> Role:
         """An actor where nothing is touched: it leaves the road as told."""
         role, told = self.role(name), self.told.get(name, CourseTold())
-        if self.behavior.near_crash or not departs(role.actor.maneuver, told.departs):
+        leaves = departs(role.actor.maneuver, told.departs)
+        if self.behavior.near_crash or not (leaves or told.lost_control):
             return role
+        role = replace(role, untouched=not leaves)
         at = departure_station(role.course, role.actor.maneuver, role.place.station_m)
         return with_room(replace(role, told=told, place=role.place._replace(station_m=at)))
 

@@ -18,6 +18,7 @@ Attitude = Literal["wheels", "roof", "left", "right"]
 """The part that a vehicle rests on: wheels, roof, left or right side."""
 Spin = Literal["clockwise", "counterclockwise"]
 Hand = Literal["left", "right"]
+HANDS: tuple[Hand, Hand] = ("left", "right")
 Steering = Literal["left", "right", "either"]
 RestLane = Literal["own", "left", "right", "middle", "left_turn", "right_turn", "center_turn"]
 """A lane at rest by its word; own: the one in which the vehicle began."""

@@ -168,7 +168,8 @@ def _loses_control(label: VehicleLabel, one: VehicleMotion) -> bool | None:
 
 
 def _spins(label: VehicleLabel, one: VehicleMotion) -> bool:
-    behind = one.path.pose[one.hit : one.hit + round(_SPIN_S / STEP_S) + 1, 2]
+    since = one.turns_from
+    behind = one.path.pose[since : max(since + round(_SPIN_S / STEP_S), one.hit) + 1, 2]
     turned = float(wrap_angle(np.diff(behind)).sum())
     return turned > SPINS_RAD if label.rest.spin == "counterclockwise" else turned < -SPINS_RAD
 

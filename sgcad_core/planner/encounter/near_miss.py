@@ -9,15 +9,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
 from sgcad_core.geometry.distances import box_distances
+from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.evasion import MOST_STEER_M, SLIGHT_STEER_M, Reaction, reacted
 from sgcad_core.planner.encounter.motion_options import Option
+from sgcad_core.planner.encounter.near_thing import is_beside_lanes, near_thing
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, clock
 from sgcad_core.records.specs import Evasion, EvasiveManeuver, NearCrash
@@ -84,6 +86,20 @@ class _Side(NamedTuple):
         at_s = self.own_s + after_s
         before, at = self.motion.poses([at_s - STEP_S, at_s])
         return float(at[0] - before[0]) / STEP_S, float(at[1] - before[1]) / STEP_S
+
+
+def near_encounter(conflicts: Conflicts, near: NearCrash) -> NearMiss:
+    """The encounter of a near crash: beside a thing off the lanes, else an ordinary conflict and its evasion."""
+    pair = conflicts.roles(near.conflict)
+    if is_beside_lanes(*pair):
+        return NearMiss(*near_thing(*pair, near))
+    made = as_near_miss(conflicts.as_they_drive(near.conflict), near)
+    started = [who for who, told in conflicts.told.items() if told.from_rest]
+    if made.encounter is not None or not started:
+        return made
+    rolling = {who: replace(told, from_rest=False) for who, told in conflicts.told.items()}
+    made = as_near_miss(replace(conflicts, told=rolling).as_they_drive(near.conflict), near)
+    return made._replace(notes=(*(f"{who} is not seen starting from rest" for who in started), *made.notes))
 
 
 def as_near_miss(found: Encounter | None, near: NearCrash) -> NearMiss:

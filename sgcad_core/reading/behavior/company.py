@@ -99,7 +99,9 @@ def _vehicles(sentence: Sentence, reading: Reading) -> Iterator[_Told]:
         where = match["where"] or ""
         in_front = "in front of" in where or "ahead of" in where
         if in_front or not elsewhere.search(f"{match['words']} {where}"):
-            yield _Told(_vehicle_kind(match["words"]), reading.actor(match["id"]), _named_before(sentence.text, match.start()))
+            yield _Told(
+                _vehicle_kind(match["words"]), reading.actor(match["id"]), _named_before(sentence.text, match.start())
+            )
     for match in rule("company.waits_for_another").finditer(sentence.text):
         here = "same" in (match["where"] or "")
         if here or not elsewhere.search(match[0].replace(" behind ", " ", 1)):

@@ -86,9 +86,11 @@ def courses_told(
     roster: Roster,
     coded: Mapping[str, ManeuverCue] | None = None,
     event: Untouched | None = None,
+    *,
+    unhit: bool = False,
 ) -> CoursesRead:
     """The course of every vehicle as told. `segments`: of `acting_segments`; `coded`: losses of control by codes;
-    `event`: what stands for the impact where nothing is touched."""
+    `event`: what stands for the impact where nothing is touched; `unhit`: nothing is, so that all comes before it."""
     impact = min((t.number for t in statements if t.role == "impact"), default=10_000)
     impact = event.source.number if event else impact
     from_median = counts_from_median([t.text for t in statements], roster)
@@ -102,6 +104,8 @@ def courses_told(
             continue
         for vehicle in segment.subjects:
             _read(heard[vehicle], segment, impact, words, late=late)
+            if unhit:
+                _read_spin(heard[vehicle], segment, segment.text)
         late = is_late(segment, impact, late)
     if event and event.kind == "rollover":
         heard[event.vehicle].add("rolls", True, event.source)
@@ -111,6 +115,15 @@ def courses_told(
     sources = {f"{v} {name}": source for v, one in heard.items() for name, source in one.sources.items()}
     places = {f"{v} {name}": at for v, one in heard.items() for name, at in one.places.items()}
     return CoursesRead(courses, sources, places)
+
+
+def before_near_miss(read: CoursesRead, *, of_thing: bool) -> CoursesRead:
+    """What is kept of courses where no contact comes about: a loss of control with its spin; of one that nearly strikes
+    a thing its way off the road too. Evasions are told apart from these."""
+    kept = ("lost_control", "spin", "spin_deg", *(("departs", "moves") if of_thing else ()))
+    courses = {who: CourseTold(**{name: getattr(told, name) for name in kept}) for who, told in read.courses.items()}
+    sources = {name: source for name, source in read.sources.items() if name.split()[1].split(".")[0] in kept}
+    return CoursesRead({who: told for who, told in courses.items() if not told.empty}, sources, read.places)
 
 
 def _read(one: _CourseReader, segment: Segment, impact: int, event: str, *, late: bool = False) -> None:

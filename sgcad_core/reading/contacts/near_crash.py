@@ -18,6 +18,7 @@ from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, Role, is_impact
+from sgcad_core.records.course import HANDS, Hand
 from sgcad_core.records.specs import EvasiveManeuver
 
 _READ: frozenset[Role] = CRASH_ROLES | {"other"}
@@ -78,6 +79,23 @@ def near_miss(
     return NearMiss(missed, evaded(segments, first.number, pair, roster.ids[0]), clearance)
 
 
+def drifts_to(near: NearMiss, statements: Sequence[Statement], hand: Hand | None) -> tuple[NearMiss, Hand | None]:
+    """The near miss of a thing, and the hand on which it lies; `hand`: as far as that is told.
+
+    What steers to that hand, or steers without avoiding anything, leads to the thing: it is no evasion.
+    """
+    texts = {t.number: t.text for t in statements}
+    kept = []
+    for evasion in near.evasions:
+        side = next((h for h in HANDS if evasion.maneuver.endswith(f"steering_{h}")), None)
+        avoids = rule("near_events.avoids").search(texts.get(evasion.source.number, ""))
+        if side is None or (avoids and side != hand):
+            kept.append(evasion)
+        else:
+            hand = hand or side
+    return near._replace(evasions=tuple(kept)), hand
+
+
 def near_misses(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
     """Contacts that nearly came about, in the order of the text."""
     found: list[ContactMention] = []
@@ -106,7 +124,7 @@ def _missed(statement: Statement, roster: Roster) -> tuple[ContactMention, ...]:
 def before_evasion(segments: Iterable[Segment], near: NearMiss | None = None) -> tuple[Segment, ...]:
     """Segments cut before the evasion: the rest is the approach of the vehicle.
 
-    Braking to avoid a contact is no maneuver before it; that of one who is nearly struck is, unless it avoids something.
+    Braking to avoid a contact is no maneuver before it; that of one who is nearly struck is, unless it avoids anything.
     """
     hits = near.contact_mentions if near else ()
     struck = {hit.other for hit in hits} - {hit.actor for hit in hits}
