@@ -249,7 +249,7 @@ def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions, timelin
         sky.light,
         sky.weather,
         sky.surface or _SURFACE.get(sky.weather),
-        near_crash=_near(crash) if contacts else None,
+        near_crash=_near(crash, inferred.maneuvers) if contacts else None,
         courses=crash.course.courses,
         impacts=tuple(read.impact for read in crash.impacts),
         untouched=crash.untouched,
@@ -258,9 +258,9 @@ def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions, timelin
     )
 
 
-def _near(crash: CrashTold) -> NearCrashFacts | None:
+def _near(crash: CrashTold, maneuvers: Mapping[str, Maneuver]) -> NearCrashFacts | None:
     near = crash.near
     if near is None:
         return None
-    evasions = tuple((e.vehicle, e.maneuver) for e in near.evasions)
+    evasions = tuple((e.vehicle, e.to_hand(CHANGES.get(maneuvers.get(e.vehicle, "other"), 0))) for e in near.evasions)
     return NearCrashFacts(evasions, near.clearance_m, bool(near.contact_mentions))

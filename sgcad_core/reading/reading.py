@@ -183,7 +183,7 @@ def events(
         if subject in (b.actor, b.other) and {b.actor, b.other} <= set(roster.ids) and not b.summary
     )
     moved = read_motions(
-        named.statements, before_evasion(segments, near) if of_study else segments, roster, next(met, None)
+        named.statements, before_evasion(segments, near, subject) if of_study else segments, roster, next(met, None)
     )
     course = courses_told(named.statements, cues, roster, _coded_loss(moved), event, unhit=not struck and of_study)
     things = {b.other for b in hits} - set(roster.ids)

@@ -34,7 +34,8 @@ def change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactM
     """Directs a lane change without a told side: towards the flank of the contact, away from a told lane."""
     for v in crash.roster.ids:
         source = inferred.sources.get(f"{v} maneuver")
-        if inferred.maneuvers[v] in CHANGES and (hand := _hand_between(crash.motions[v])):
+        into = _lane_entered(crash, inferred, pairs, v)
+        if inferred.maneuvers[v] in CHANGES and (hand := _hand_between(crash.motions[v], into)):
             inferred.maneuvers[v] = "lane_change_left" if hand == "left" else "lane_change_right"
             continue
         if (
@@ -69,9 +70,21 @@ def passing_by(crash: CrashTold, inferred: CrashInferred) -> None:
             inferred.told_maneuvers.discard(v)
 
 
-def _hand_between(motion: VehicleMotion) -> Hand | None:
+def _lane_entered(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention], v: str) -> str:
+    """The word of the lane into which one changes: told, else that of the one that it comes before and that keeps its
+    lane."""
+    motion = crash.motions[v]
+    hit = next((b for b in pairs if v in (b.actor, b.other)), None)
+    other = hit and (hit.other if hit.actor == v else hit.actor)
+    source = inferred.sources.get(f"{v} maneuver")
+    if motion.to_lane is None and other and source and source.rule in (INTO_LANE_OF, INTO_LANE_OF_OTHER):
+        return str(crash.motions[other].lane_word) if inferred.maneuvers[other] not in CHANGES else ""
+    return str(motion.to_lane)
+
+
+def _hand_between(motion: VehicleMotion, into: str) -> Hand | None:
     """The hand on which the lane lies into which it changes, by the words of both lanes; None where one is open."""
-    start, end = _FROM_RIGHT.get(str(motion.lane_word)), _FROM_RIGHT.get(str(motion.to_lane))
+    start, end = _FROM_RIGHT.get(str(motion.lane_word)), _FROM_RIGHT.get(into)
     if start is None or end is None or start == end:
         return None
     return "left" if end > start else "right"
