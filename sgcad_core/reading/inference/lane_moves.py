@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from sgcad_core.kinds import CHANGES
 from sgcad_core.reading.contacts.contact_records import ContactMention
+from sgcad_core.reading.contacts.near_crash import RETURNS
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.maneuvers import INTO_LANE_OF, INTO_LANE_OF_OTHER, OUT_OF_LANE_LEFT, SHIFTED
@@ -35,7 +36,8 @@ def change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactM
     for v in crash.roster.ids:
         source = inferred.sources.get(f"{v} maneuver")
         into = _lane_entered(crash, inferred, pairs, v)
-        if inferred.maneuvers[v] in CHANGES and (hand := _hand_between(crash.motions[v], into)):
+        hand = _hand_between(crash.motions[v], into) or _hand_left(crash, v)
+        if inferred.maneuvers[v] in CHANGES and hand:
             inferred.maneuvers[v] = "lane_change_left" if hand == "left" else "lane_change_right"
             continue
         if (
@@ -51,6 +53,7 @@ def change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactM
             "right" in (own or "").split("/")
             or "left" in (other or "").split("/")
             or crash.motions[v].lane_word == "left"
+            or _meets_merging(inferred, hit, v)
         )
         if told == "right" or (told is None and towards):
             inferred.maneuvers[v] = "lane_change_right"
@@ -68,6 +71,20 @@ def passing_by(crash: CrashTold, inferred: CrashInferred) -> None:
         if passes and told and against(inferred.headings[v], inferred.headings[other]):
             inferred.maneuvers[v] = "straight"
             inferred.told_maneuvers.discard(v)
+
+
+def _hand_left(crash: CrashTold, v: str) -> Hand | None:
+    """The hand of a lane change from which one steers back, as told, to the other hand."""
+    backs = (
+        (e.maneuver for e in crash.near.evasions if e.vehicle == v and e.source.rule == RETURNS) if crash.near else ()
+    )
+    return next(("right" if how.endswith("left") else "left" for how in backs if not how.endswith("steering")), None)
+
+
+def _meets_merging(inferred: CrashInferred, hit: ContactMention | None, v: str) -> bool:
+    """Whether the other one of a contact merges, which it does from the right."""
+    other = hit and (hit.other if hit.actor == v else hit.actor)
+    return other is not None and inferred.maneuvers.get(other) == "merge"
 
 
 def _lane_entered(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention], v: str) -> str:
