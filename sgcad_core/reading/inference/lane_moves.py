@@ -83,8 +83,7 @@ def _hand_left(crash: CrashTold, v: str) -> Hand | None:
 
 def _meets_merging(inferred: CrashInferred, hit: ContactMention | None, v: str) -> bool:
     """Whether the other one of a contact merges, which it does from the right."""
-    other = hit and (hit.other if hit.actor == v else hit.actor)
-    return other is not None and inferred.maneuvers.get(other) == "merge"
+    return hit is not None and inferred.maneuvers.get(hit.other if hit.actor == v else hit.actor) == "merge"
 
 
 def _lane_entered(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention], v: str) -> str:
