@@ -116,10 +116,10 @@ def _leads(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:
         return
     for sentence in reading.sentences:
         for match in rule("company.leads").finditer(sentence.text):
-            name = reading.actor(match["id"] or match["ahead"])
+            name = reading.actor(match["id"] or match["ahead"] or match["behind"])
             if name not in ids:
                 stands = rule("company.leads_standing").search(sentence.text)
-                yield _Told(_vehicle_kind(match["words"] or match["kind"]), name, subject, drives=not stands)
+                yield _Told(_vehicle_kind(match["words"] or match["kind"] or "car"), name, subject, drives=not stands)
 
 
 def _people(sentence: Sentence) -> Iterator[_Told]:
