@@ -262,5 +262,6 @@ def _near(crash: CrashTold, maneuvers: Mapping[str, Maneuver]) -> NearCrashFacts
     near = crash.near
     if near is None:
         return None
-    evasions = tuple((e.vehicle, e.to_hand(CHANGES.get(maneuvers.get(e.vehicle, "other"), 0))) for e in near.evasions)
+    changes = {e.vehicle: CHANGES.get(maneuvers.get(e.vehicle, "other"), 0) for e in near.evasions}
+    evasions = tuple((e.vehicle, how) for e in near.evasions if (how := e.beside(changes[e.vehicle])))
     return NearCrashFacts(evasions, near.clearance_m, bool(near.contact_mentions))

@@ -37,9 +37,13 @@ class EvasionTold(NamedTuple):
     maneuver: EvasiveManeuver
     source: Source
 
-    def to_hand(self, change: int) -> EvasiveManeuver:
-        """The maneuver with its hand, where it leads back from a change of lanes: 1 to the left, -1 to the right."""
-        if not change or self.source.rule != RETURNS or not self.maneuver.endswith("steering"):
+    def beside(self, change: int) -> EvasiveManeuver | None:
+        """The maneuver beside a change of lanes, 1 to the left, -1 to the right: without the steering that is that
+        change, None where it is no more; with its hand where it leads back from it."""
+        hand = {1: "left", -1: "right"}.get(change)
+        if hand and self.maneuver.endswith(f"steering_{hand}") and self.source.words.lower().startswith(_MOVES):
+            return "braking" if self.maneuver.startswith("braking") else None
+        if not hand or self.source.rule != RETURNS or not self.maneuver.endswith("steering"):
             return self.maneuver
         return f"{self.maneuver}_{'right' if change > 0 else 'left'}"  # type: ignore[return-value]
 
@@ -205,6 +209,8 @@ def _maneuver(segment: Segment) -> tuple[EvasiveManeuver, Source] | None:
     return (_BRAKING[maneuver] if "brakes" in told else maneuver), source
 
 
+_MOVES = ("chang", "mov", "pull", "drift")
+"""Beginnings of verbs of steering that tell a change of lanes as well."""
 RETURNS = "near_events.went_back"
 """Rule of an evasion back into the lane from which its vehicle began to change."""
 _BRAKING: dict[EvasiveManeuver, EvasiveManeuver] = {

@@ -63,9 +63,11 @@ def _still_moving(crash: CrashTold, inferred: CrashInferred, pairs: list[Contact
     vehicle that stood all the time stays stopped."""
     evades = {e.vehicle: e.source.number for e in crash.near.evasions} if crash.near else {}
     pair = {name for b in pairs[:1] for name in (b.actor, b.other)} or set(crash.roster.ids[:2])
-    for v in sorted(pair) if crash.near else ():
+    lone = crash.roster.counted and not crash.contact_mentions  # one that "brakes to stop" and touches nothing
+    for v in sorted(pair) if crash.near or lone else ():
         source = inferred.sources.get(f"{v} maneuver")
-        if inferred.maneuvers[v] == "stopped" and source and rule("near_events.came_to_stop").match(source.words):
+        comes = source and rule("near_events.came_to_stop").match(source.words)
+        if inferred.maneuvers[v] == "stopped" and comes and (crash.near or comes[0].startswith("to")):
             inferred.maneuvers[v] = "slowing"
             continue
         stood = inferred.maneuvers[v] == "stopped" or (
