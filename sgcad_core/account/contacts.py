@@ -4,17 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
 from sgcad_core.case.records import ObservedContact
 from sgcad_core.execution.contact import avoided, closest_approach
+from sgcad_core.geometry.plane import Floats
+from sgcad_core.metrics.labels.course_label_match import BRAKES_MPS, STEERS_M
+from sgcad_core.metrics.labels.observed_crash import VehicleMotion
 from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.language import of_role
+from sgcad_core.records.acts import steering_of
 from sgcad_core.records.course import ImpactTold
 from sgcad_core.records.specs import Area
 
 _OPEN_SIDES = 4
 _EPS_S = 1e-6
+_EVADES_BEHIND_S = 2.5
+"""Time behind the nearest approach of a near crash in which an evasion may still be seen."""
 
 
 def contact_items(made: ExecutedCase) -> Iterator[Item]:
@@ -127,11 +135,44 @@ def _letter(word: str) -> str:
 def _near_crash(made: ExecutedCase) -> Iterator[Item]:
     near, told = made.scenario.near_crash, made.reading.crash.near_crash
     pair = made.reading.crash.contacts[0] if made.reading.crash.contacts else None
-    if told is None or pair is None or not told.stated:
+    if told is None or pair is None:
         return
     text = f"near crash of {pair.striker} and {pair.struck}"
     closest = closest_approach(made.execution.trajectories, made.sizes, (pair.striker, pair.struck))
+    yield from _evasion_items(made, closest.t_s) if closest else ()
+    if not told.stated:
+        return
     seen = f"{closest.clearance_m:.1f} m" if closest else "nobody near"
     has = near is not None and avoided(near, made.execution.contact, closest)
     why = f"they come to {seen}" if not made.execution.contact else "somebody touches"
     yield made.item(has, "contacts.0.striker", pair.striker, seen, why=why, text=text)
+
+
+def _evasion_items(made: ExecutedCase, nearest_s: float) -> Iterator[Item]:
+    """One item for each told evasion of a vehicle in the scenario; `nearest_s`: when the two come nearest."""
+    for fact in made.reading.facts:
+        if not fact.field.startswith("near_crash.") or (who := fact.field.split(".")[1]) not in made.tracks:
+            continue
+        told = str(fact.value)
+        missed = [words for words, seen in _deeds(made, who, told, nearest_s) if not seen]
+        why = f"it hardly {' and '.join(missed)}"
+        yield made.item(not missed, fact.field, told, why=why, text=f"{who} {told.replace('_', ' ')}")
+
+
+def _deeds(made: ExecutedCase, who: str, told: str, nearest_s: float) -> Iterator[tuple[str, bool]]:
+    """The parts of an evasion in words, and whether each is seen."""
+    track = made.tracks[who]
+    near = track.t_s <= nearest_s + _EVADES_BEHIND_S
+    if "braking" in told:
+        yield "brakes", _most_rise(-track.speed_mps[near]) > BRAKES_MPS
+    hand = steering_of(told)  # type: ignore[arg-type]
+    if hand is not None:
+        aside = VehicleMotion(made.crash, who).aside
+        aside = aside[near[: len(aside)]]
+        ways = {"left": (1.0,), "right": (-1.0,)}.get(hand, (1.0, -1.0))
+        yield "steers aside", any(_most_rise(way * aside) > STEERS_M for way in ways)
+
+
+def _most_rise(values: Floats) -> float:
+    """The most by which (n,) values rise from one to a later one; 0 of none."""
+    return float((values - np.minimum.accumulate(values)).max(initial=0.0))

@@ -160,7 +160,7 @@ def _spin_deg(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     if not isinstance(value, int | float):
         return None
     one = VehicleMotion(made.crash, who)
-    turned = abs(math.degrees(float(wrap_angle(np.diff(one.path.pose[one.hit :, 2])).sum())))
+    turned = abs(math.degrees(float(wrap_angle(np.diff(one.path.pose[one.turns_from :, 2])).sum())))
     return Comparison(abs(turned - float(value)) <= _SPIN_DEG, round(turned), f"it turns by {turned:.0f} degrees")
 
 

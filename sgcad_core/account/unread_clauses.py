@@ -143,7 +143,7 @@ def _contact(reading: Reading, sentence: Sentence, read: _Read) -> bool:
 def _motion(reading: Reading, sentence: Sentence, read: _Read) -> bool:
     late = sentence.start > read.first_contact
     return (
-        late or read.has(sentence.start, "vehicles.") or bool(read.acts.get(sentence.start))
+        late or read.has(sentence.start, "vehicles.", "near_crash.") or bool(read.acts.get(sentence.start))
         or _is_retold(reading, reading.text_of(sentence).strip())
     )  # fmt: skip
 

@@ -76,6 +76,7 @@ class Role:
     """Whether the other one is a thing that runs along the road."""
     other_leaves: int = 0
     """The hand on which the other one leaves the road: 1 left, -1 right; 0: it stays on it."""
+    untouched: bool = False  # touches nothing, and nothing is near it
     leaves_lanes: bool = False
     """Whether it may drive out of its lanes untold: where the pair meets in no other way."""
 
@@ -291,8 +292,7 @@ def _waits_behind(role: Role) -> bool:
 
 
 def line_m(role: Role) -> float:
-    """The station of its center at the last stop line before the meeting place; in its stall when backing out of
-    one."""
+    """The station of its center at the last stop line before the meeting place; backing out of a stall, in it."""
     if role.course.stalls and role.actor.maneuver == "backing":
         return IN_STALL_M
     entries = [p.entry_m for p in role.course.passages if p.entry_m < role.place.station_m]

@@ -1,7 +1,8 @@
-"""Road users without a contact that stand ahead of one with a contact: traffic that it waits for, and pedestrians.
+"""Road users without a contact ahead of one with a contact: traffic that it waits for or follows, and pedestrians.
 
-A stopped vehicle in the lane of a vehicle of the contact, and a pedestrian on its road, are placed ahead of all that
-drive there, as far as these come. Works on a settled scene. Knows actors, courses and tracks.
+One that slows drives ahead of that vehicle on its way. A stopped vehicle in the lane of a vehicle of the contact, and a
+pedestrian on its road, are placed ahead of all that drive there, as far as these come. Works on a settled scene. Knows
+actors, courses and tracks.
 """
 
 from __future__ import annotations
@@ -18,7 +19,9 @@ from sgcad_core.planner.aftermath.struck_objects import standing_track
 from sgcad_core.planner.encounter.motion_options import options
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.walkers import walking_courses
+from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import CLEAR_M, Scene
+from sgcad_core.planner.towing import ahead_of
 from sgcad_core.records.specs import Actor, BehaviorSpec, size_m
 
 GAP_M = 2.0
@@ -32,6 +35,8 @@ _WALKED_S = (0.0, 0.6, -0.6, 1.2, -1.2, 2.0, -2.0, 3.0, -3.0)
 """Own times of a pedestrian at the first contact; at 0 in the middle of the lane."""
 _ROLLS_ON_M = 14.0
 """Way of one that still rolls when it is struck, to where it stands behind the others."""
+_HEADWAY_M, _EARLIER_S = 4.0, 0.7
+"""From one that slows to the one behind it once both stand; time by which it does the same earlier."""
 _INTO_M = 1.0
 """By which a standing front may be over the edge of a junction."""
 
@@ -42,7 +47,7 @@ def led_by(behavior: BehaviorSpec, actor: Actor) -> Actor | None:
     touching = {who for c in behavior.contacts for who in (c.striker, c.struck)}
     if first is None or actor.id in touching or actor.id in (first.striker, first.struck):
         return None
-    waits = actor.maneuver == "stopped" and actor.record.drives and not actor.gore
+    waits = actor.maneuver in ("stopped", "slowing") and actor.record.drives and not actor.gore
     if not (waits or (actor.record.walks and actor.maneuver == "straight")):
         return None
     pair = [a for name in (first.struck, first.striker) for a in behavior.actors if a.id == name]
@@ -57,7 +62,7 @@ def with_company(behavior: BehaviorSpec, courses: Mapping[str, Course]) -> dict[
     """The courses, with the room that vehicles need which stand ahead in the lane."""
     found = dict(courses)
     for actor in behavior.actors:
-        leader = None if actor.record.walks else led_by(behavior, actor)
+        leader = None if actor.record.walks or actor.maneuver == "slowing" else led_by(behavior, actor)
         if leader is None:
             continue
         for other in _lane_of(behavior, leader):
@@ -76,10 +81,27 @@ def stand_ahead(scene: Scene, actor: Actor, behavior: BehaviorSpec, courses: Map
     leader = led_by(behavior, actor)
     if leader is None or leader.id not in scene.tracks:
         return False
+    if actor.maneuver == "slowing" and _drives(scene, actor, leader.id):
+        return True
     course = courses[leader.id]
     front = _front_m(scene, behavior, leader, course)
     place = _walks if actor.record.walks else _stands
     return place(scene, actor, course, front)
+
+
+def _drives(scene: Scene, actor: Actor, leader: str) -> bool:
+    """Whether an actor that drives on the way of the one behind it, slowing first, is clear of all."""
+    track = scene.tracks[leader]
+    if track.motion.standing:
+        return False
+    size, own_s = size_m(actor), track.own_s + scene.contact * STEP_S
+    for more in _FURTHER_M:
+        motion = ahead_of(track.motion, (track.size[0] + size[0]) / 2 + _HEADWAY_M + more, size)
+        poses = scene.poses(motion, own_s + _EARLIER_S, brakes=False)
+        if scene.clear_until(poses, size, CLEAR_M) == scene.count:
+            scene.add(actor.id, actor.kind, motion, own_s + _EARLIER_S, brakes=False)
+            return True
+    return False
 
 
 def _stands(scene: Scene, actor: Actor, course: Course, front_m: float) -> bool:

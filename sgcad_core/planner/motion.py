@@ -183,6 +183,14 @@ def stand(path: Path, place_m: float) -> tuple[Floats, Floats]:
     return (path.s_m - place_m) / _STANDING_MPS, path.s_m
 
 
+def standing_at(pose: Floats, size: Size, *, fixed: bool = False) -> Motion:
+    """The motion of what stands at a (3,) pose all the time, at its own time 0."""
+    x, y, heading = (float(v) for v in pose)
+    line = np.array([[x, y], [x + 0.01 * math.cos(heading), y + 0.01 * math.sin(heading)]])
+    path = Path(line, np.array([0.0, 0.01]), np.full(2, heading))
+    return Motion(path, *stand(path, 0.0), size, np.zeros(2), -math.inf, standing=True, fixed=fixed)
+
+
 def _rising(along: Floats, limit: Floats, slope: float) -> Floats:
     """The largest v^2 below a limit whose slope over the distance is at most 2 * slope."""
     rise = 2 * slope * along

@@ -26,7 +26,6 @@ from sgcad_core.planner.encounter.arrival import as_they_come
 from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.meeting_place import Place, preferred_station
 from sgcad_core.planner.encounter.motion_options import Option
-from sgcad_core.planner.encounter.near_miss import as_near_miss
 from sgcad_core.planner.encounter.off_center import is_passed
 from sgcad_core.planner.encounter.pacing_choices import ROLLS_IN
 from sgcad_core.planner.encounter.pairing import Encounter
@@ -41,6 +40,7 @@ from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.lines.told_moves import off_and_back, with_room
 from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
 from sgcad_core.planner.motion import STEP_S, Motion, gentle_mps2
+from sgcad_core.planner.near_crash.near_miss import near_encounter
 from sgcad_core.planner.scene import AFTER_S, Scene
 from sgcad_core.planner.towing import ahead_of, coupling_m, spacing_m, tractors
 from sgcad_core.records.course import NOTHING_TOLD, Courses, CourseTold
@@ -128,7 +128,8 @@ class _Cast:
         """Those of which several moves are told, or that leave the road and touch nothing."""
         alone = not (self.possible or self.behavior.near_crash)
         told = ((a, self.told.get(a.id, CourseTold())) for a in self.behavior.actors)
-        return [a.id for a, its in told if its.moves or (alone and departs(a.maneuver, its.departs))]
+        off = [(a.id, its.moves, its.lost_control or departs(a.maneuver, its.departs)) for a, its in told]
+        return [who for who, moves, leaves in off if moves or (alone and leaves)]
 
     @cached_property
     def possible(self) -> list[Contact]:
@@ -192,12 +193,7 @@ class _Cast:
         """A conflict with its evasion; None where the two cannot be brought near or cannot be parted."""
         if not self.usable((near.conflict,)):
             return None
-        found, notes = as_near_miss(conflicts.as_they_drive(near.conflict), near)
-        if found is None and (started := [who for who, told in conflicts.told.items() if told.from_rest]):
-            rolling = {who: replace(told, from_rest=False) for who, told in conflicts.told.items()}
-            course = replace(conflicts, told=rolling).as_they_drive(near.conflict)
-            found, notes = as_near_miss(course, near)
-            notes = (*(f"{who} is not seen starting from rest" for who in started), *notes)
+        found, notes = near_encounter(conflicts, near)
         self.notes += notes
         return found
 
@@ -288,8 +284,10 @@ class _Cast:
     def alone(self, name: str) -> Role:
         """An actor where nothing is touched: it leaves the road as told."""
         role, told = self.role(name), self.told.get(name, CourseTold())
-        if self.behavior.near_crash or not departs(role.actor.maneuver, told.departs):
+        leaves = departs(role.actor.maneuver, told.departs)
+        if self.behavior.near_crash or not (leaves or told.lost_control):
             return role
+        role = replace(role, untouched=not leaves)
         at = departure_station(role.course, role.actor.maneuver, role.place.station_m, beyond=told.beyond)
         return with_room(replace(role, told=told, place=role.place._replace(station_m=at)))
 

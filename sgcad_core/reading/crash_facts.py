@@ -119,13 +119,14 @@ class CrashFacts:
 
     def _departing(self, courses: Courses) -> Courses:
         """The courses of vehicles whose departure only the thing beside the road implies that they strike first."""
-        things = {other.id: other.word for other in self.others if rule("departures.roadside").search(other.word)}
+        beside = rule("departures.roadside")
+        things = {other.id: other for other in self.others if other.hand or beside.search(other.word)}
         found = {}
         for v in self.vehicles:
             course = courses.get(v.id) or self.courses.get(v.id, CourseTold())
             first = self.first_contact(v.id)
             if first is not None and first.striker == v.id and first.struck in things and course.departs is None:
-                found[v.id] = replace(course, departs="either")
+                found[v.id] = replace(course, departs=things[first.struck].hand or "either")
         return found
 
     def vehicle(self, id: str) -> VehicleFacts | None:
@@ -245,6 +246,7 @@ def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions, timelin
     """The crash that was read (`crash_told`) and what follows from it. A text that names no vehicle gives none."""
     vehicles = tuple(_vehicle(v, crash.motions[v.id], inferred, timeline) for v in crash.roster.vehicles)
     beside = others(crash.contact_mentions, crash.roster.ids, sum(v.beside for v in crash.roster.vehicles))
+    beside = tuple(replace(other, hand=crash.hands.get(other.word)) for other in beside)
     contacts = tuple(inferred.contacts) or _without_vehicle(crash, inferred, beside)
     if crash.roster.counted:
         vehicles, contacts = _subject_first(vehicles, contacts)
@@ -258,7 +260,7 @@ def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions, timelin
         sky.weather,
         sky.surface or _SURFACE.get(sky.weather),
         slight=sky.slight and crash.roster.counted and crash.near is None,
-        near_crash=_near(crash) if contacts else None,
+        near_crash=_near(crash, inferred.maneuvers) if contacts else None,
         courses=crash.course.courses,
         impacts=tuple(read.impact for read in crash.impacts),
         untouched=crash.untouched,
@@ -267,9 +269,10 @@ def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions, timelin
     )
 
 
-def _near(crash: CrashTold) -> NearCrashFacts | None:
+def _near(crash: CrashTold, maneuvers: Mapping[str, Maneuver]) -> NearCrashFacts | None:
     near = crash.near
     if near is None:
         return None
-    evasions = tuple((e.vehicle, e.maneuver) for e in near.evasions)
+    changes = {e.vehicle: CHANGES.get(maneuvers.get(e.vehicle, "other"), 0) for e in near.evasions}
+    evasions = tuple((e.vehicle, how) for e in near.evasions if (how := e.beside(changes[e.vehicle])))
     return NearCrashFacts(evasions, near.clearance_m, bool(near.contact_mentions))

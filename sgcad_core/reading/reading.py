@@ -18,16 +18,17 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from sgcad_core.reading.actors.part_numbers import counts_itself
-from sgcad_core.reading.actors.people_objects import walk_of
+from sgcad_core.reading.actors.people_objects import is_person, walk_of
 from sgcad_core.reading.actors.rename_ids import renamed
 from sgcad_core.reading.actors.vehicles import Roster, read_roster
 from sgcad_core.reading.contacts.acting_segments import acting_segments
 from sgcad_core.reading.contacts.contact_records import AREAS, ContactMention
 from sgcad_core.reading.contacts.contacts import contact_mentions
-from sgcad_core.reading.contacts.crash_course import CoursesRead, courses_told
+from sgcad_core.reading.contacts.crash_course import before_near_miss, courses_told
 from sgcad_core.reading.contacts.crash_roles import role_facts
 from sgcad_core.reading.contacts.later_impacts import later_impacts, things_struck, with_resting_contacts
-from sgcad_core.reading.contacts.near_crash import before_evasion, near_miss, near_misses, tells_hit
+from sgcad_core.reading.contacts.near_crash import before_evasion, drifts_to, near_miss, near_misses, tells_hit
+from sgcad_core.reading.contacts.road_departure import hand_of_thing
 from sgcad_core.reading.contacts.untouched_events import untouched_event
 from sgcad_core.reading.crash_facts import CrashFacts, crash_of
 from sgcad_core.reading.inference.gaps import (
@@ -181,14 +182,22 @@ def events(
         for b in hits
         if subject in (b.actor, b.other) and {b.actor, b.other} <= set(roster.ids) and not b.summary
     )
-    moved = read_motions(named.statements, before_evasion(segments) if of_study else segments, roster, next(met, None))
-    course = CoursesRead() if near else courses_told(named.statements, cues, roster, _coded_loss(moved), event)
+    moved = read_motions(
+        named.statements, before_evasion(segments, near, subject) if of_study else segments, roster, next(met, None)
+    )
+    course = courses_told(named.statements, cues, roster, _coded_loss(moved), event, unhit=not struck and of_study)
+    things = {b.other for b in hits} - set(roster.ids)
+    course = before_near_miss(course, of_thing=bool(things)) if near else course
     pairs = {frozenset((b.actor, b.other)) for b in struck if b.other in roster.ids}
     later = () if near else later_impacts(named.statements, cues, roster, struck)
     impacts = () if near else with_resting_contacts(later, course, len(pairs))
     walks = {b.other: walk_of(b.other, named.statements) for b in hits if b.other not in roster.ids}
     missed = frozenset(frozenset((b.actor, b.other)) for b in near_misses(named.statements, roster))
-    crash_told = CrashTold(roster, moved, hits, course, impacts, near, walks, missed, event)
+    hands = {word: hand for word in things if (hand := hand_of_thing(word, [t.text for t in named.statements]))}
+    if near and len(things) == 1 and not is_person(thing := next(iter(things))):
+        near, hand = drifts_to(near, named.statements, hands.get(thing))
+        hands |= {thing: hand} if hand else {}
+    crash_told = CrashTold(roster, moved, hits, course, impacts, near, walks, hands, missed, event)
     return Events(crash_told, conditions(found), signal_states(segments))
 
 

@@ -18,6 +18,7 @@ Attitude = Literal["wheels", "roof", "left", "right"]
 """The part that a vehicle rests on: wheels, roof, left or right side."""
 Spin = Literal["clockwise", "counterclockwise"]
 Hand = Literal["left", "right"]
+HANDS: tuple[Hand, Hand] = ("left", "right")
 Steering = Literal["left", "right", "either"]
 ComesTo = Literal["drives_up", "moves_up"]
 """How a vehicle comes to the stop at which it is struck: it drives there, or it moves up from another stop."""

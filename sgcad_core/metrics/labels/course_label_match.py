@@ -78,7 +78,7 @@ def _all_wrong(told: RestTold) -> dict[str, bool]:
 def _maneuver(label: VehicleLabel, one: VehicleMotion) -> bool | None:
     """Whether the path up to the first contact shows the maneuver; None for `other`."""
     kind, moved = label.maneuver, one.moved_m(label.maneuver)
-    aside = float(one.aside[-1] - one.aside[0])
+    aside = _aside(one, 1.0 if kind in _LEFTWARD else -1.0)
     if (told := maneuver_shown(kind, moved, one.turned_deg())) is not None:
         return told
     if kind == "negotiating_curve":
@@ -88,13 +88,23 @@ def _maneuver(label: VehicleLabel, one: VehicleMotion) -> bool | None:
     if kind == "backing":
         ahead = np.diff(one.before[:, :2], axis=0) @ np.array([math.cos(one.before[0, 2]), math.sin(one.before[0, 2])])
         return float(ahead.sum()) < -0.5
-    if kind in ("lane_change_left", "crossing_centerline", "overtaking", "departing_road_left"):
+    if kind in _LEFTWARD:
         return aside > ASIDE_M
     if kind in ("lane_change_right", "departing_road_right"):
         return aside < -ASIDE_M
     if kind == "merge":  # its lane may itself lead into the other road
         return max(abs(aside), abs(float(one.off_line[-1] - one.off_line[0]))) > ASIDE_M
     return None
+
+
+_LEFTWARD = ("lane_change_left", "crossing_centerline", "overtaking", "departing_road_left")
+
+
+def _aside(one: VehicleMotion, way: float) -> float:
+    """How far to the left it has moved at its first contact; of one that touches nothing, and may have come back, the
+    most to one hand: 1 left, -1 right."""
+    moved = one.aside - one.aside[0]
+    return float(moved[-1]) if one.turns_from else way * float((way * moved).max())
 
 
 def _slows(one: VehicleMotion) -> bool:
@@ -168,7 +178,8 @@ def _loses_control(label: VehicleLabel, one: VehicleMotion) -> bool | None:
 
 
 def _spins(label: VehicleLabel, one: VehicleMotion) -> bool:
-    behind = one.path.pose[one.hit : one.hit + round(_SPIN_S / STEP_S) + 1, 2]
+    since = one.turns_from
+    behind = one.path.pose[since : max(since + round(_SPIN_S / STEP_S), one.hit) + 1, 2]
     turned = float(wrap_angle(np.diff(behind)).sum())
     return turned > SPINS_RAD if label.rest.spin == "counterclockwise" else turned < -SPINS_RAD
 

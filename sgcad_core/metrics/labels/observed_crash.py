@@ -83,6 +83,12 @@ class VehicleMotion:
         return self.crash.first_of(self.actor)
 
     @cached_property
+    def turns_from(self) -> int:
+        """The sample from which a told rotation is seen: that of its first contact, the first where it has none."""
+        touched = any(self.actor in (a, b) for _, a, b in self.crash.touches)
+        return self.hit if touched else 0
+
+    @cached_property
     def before(self) -> Floats:
         """(n, 3) poses up to the contact."""
         return self.path.pose[: self.hit + 1]

@@ -17,9 +17,8 @@ from sgcad_core.geometry.plane import SIDES, Floats, Size, gaps_where_near
 from sgcad_core.planner.actor_plan import is_beside
 from sgcad_core.planner.aftermath.second_contact import first_sides
 from sgcad_core.planner.aftermath.told_order import ToldOrder, touched
-from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.long_things import beside, corner_side, hand_of_side, is_long, meeting_angle, turned_to
-from sgcad_core.planner.motion import STEP_S, Motion, stand
+from sgcad_core.planner.motion import STEP_S, standing_at
 from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.records.specs import Actor, Area, size_m
 from sgcad_core.roads.surface import RoadSurface
@@ -146,12 +145,8 @@ def _on_another_side(scene: Scene, strike: Strike) -> bool:
 
 def standing_track(scene: Scene, thing: Actor, pose: Floats, *, fixed: bool = False) -> Track:
     """An actor that stands at a pose all the time, not yet part of the scene."""
-    x, y, heading = (float(v) for v in pose)
-    line = np.array([[x, y], [x + 0.01 * math.cos(heading), y + 0.01 * math.sin(heading)]])
-    path = Path(line, np.array([0.0, 0.01]), np.full(2, heading))
-    size = size_m(thing)
-    motion = Motion(path, *stand(path, 0.0), size, np.zeros(2), -math.inf, standing=True, fixed=fixed)
-    return Track(thing.id, thing.kind, size, scene.poses(motion, 0.0, brakes=False), motion, 0.0)
+    motion = standing_at(pose, size_m(thing), fixed=fixed)
+    return Track(thing.id, thing.kind, motion.size, scene.poses(motion, 0.0, brakes=False), motion, 0.0)
 
 
 def _stand(scene: Scene, strike: Strike, pose: Floats) -> Track:

@@ -74,7 +74,7 @@ class Conflicts:
 
         None where their ways never meet so: no lane is left for a conflict that is avoided.
         """
-        a, b = self._roles(conflict)
+        a, b = self.roles(conflict)
         ordinary = [Stage((self._options(a, b, _unturned), self._options(b, a, _unturned)), _TRIES[0])]
         sides = (conflict.striker_area, conflict.struck_area)
         turns = [Stage((self._options(a, b, turned), self._options(b, a, turned)), _TURNING)]
@@ -86,9 +86,9 @@ class Conflicts:
     def of(self, contact: Contact) -> Encounter | None:
         """The encounter of the declared pair; None where the two cannot be brought together."""
         wanted = (contact.striker_area, contact.struck_area)
-        found = self._kept_or_forced(self._roles(contact), contact, wanted)
+        found = self._kept_or_forced(self.roles(contact), contact, wanted)
         if found is None:  # drawn and told as odd driving: the account finds it, and the verdict is never "whole"
-            a, b = (replace(role, leaves_lanes=True) for role in self._roles(contact))
+            a, b = (replace(role, leaves_lanes=True) for role in self.roles(contact))
             found = search(self._stages(a, b), wanted)
             if found is not None:
                 self.notes.append(f"{contact.striker} and {contact.struck} touch only out of their lanes")
@@ -136,7 +136,8 @@ class Conflicts:
         if self.by_force:
             yield Stage(both(spun), _TRIES[3])
 
-    def _roles(self, contact: Contact) -> tuple[Role, Role]:
+    def roles(self, contact: Contact) -> tuple[Role, Role]:
+        """The two of a contact at their meeting place."""
         a, b = self.actors[contact.striker], self.actors[contact.struck]
         if a.maneuver in ("stopped", "parked") and b.maneuver in ("stopped", "parked"):
             a = self._set_rolling(a, b)

@@ -29,6 +29,7 @@ from sgcad_core.planner.lines.departures import (
     shift_length_m,
     still_leaving,
 )
+from sgcad_core.planner.lines.lost_control import lost_lines
 from sgcad_core.planner.lines.path import ramp_length_m
 from sgcad_core.planner.lines.told_moves import last_move, with_earlier
 from sgcad_core.planner.lines.turning import corner_lines
@@ -43,19 +44,17 @@ OTHER_LANE_COST = 1.0
 """More than another speed: a told lane is taken wherever the two can meet from it."""
 _SHARES = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
 """Shares of the shift of a maneuver with their costs."""
-_OTHER_SIDE, _STAYS_ON_ROAD = 0.25, 2.5
-"""Costs of leaving the road on the unlikelier side, and of a told departure that is not driven."""
+_OTHER_SIDE, _STAYS_ON_ROAD, _GENTLE = 0.25, 2.5, 0.2
+"""Costs of leaving the road on the unlikelier side, of a told departure that is not driven, and of a gentle change of
+line where a steep one is needed."""
 _OFF_BEHIND_TURN_M = 16.0
 """Length of the way off the road of a vehicle that turns first."""
 _SWERVES, _OFF_COURSE = "swerves", "leaves its course"
 HEAD_ON = "leaves its lane, as the told sides imply of one of the two"
 PARKED_THERE = "leaves its lane, as the place of the parked vehicle implies"
-_OVERLAPS = ((0.4, 0.0), (0.25, 0.03), (0.6, 0.05), (0.9, 0.1))
-"""Shares of its width with which a vehicle meets a parked one, and their costs."""
 UNTOLD = (STEERS, LEAVES, _SWERVES, _OFF_COURSE, SKIDS)
 """Notes on driving that a report does not tell unless it tells a swerve or a skid."""
-_GENTLE = 0.2
-"""Cost of a gentle change of line where a steep one is needed."""
+_OVERLAPS = ((0.4, 0.0), (0.25, 0.03), (0.6, 0.05), (0.9, 0.1))  # shares of its width on a parked one, with costs
 
 
 def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
@@ -63,8 +62,9 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
 
     Not `fine`: without those that differ by less than a metre.
     """
-    last = last_move(role)
-    return _lines(role, fine=fine) if last is None else _wandering(role, last, fine=fine)
+    if lost := lost_lines(role):
+        return lost
+    return _lines(role, fine=fine) if (last := last_move(role)) is None else _wandering(role, last, fine=fine)
 
 
 def _wandering(role: Role, last: Move, *, fine: bool) -> list[Drift]:

@@ -282,7 +282,7 @@ def _pace(role: Role, option: Option) -> Pace:
     curve = max(usual * pacing.factor, speed if told else 3.0)
     hard = told or bool(option.drift.note or option.twist.note or option.dodge or option.drift.earlier)
     pace = Pace(speed, curve, starts_at_m(role, pacing), grip_mps2=role.grip_mps2, hard=hard)
-    slows = role.actor.maneuver == "slowing"
+    slows = role.actor.maneuver == "slowing" and not role.untouched
     if not (slows or role.told.brakes):
         return pace
     slowed = (0.35 if slows else BRAKED_TO) * speed

@@ -14,6 +14,7 @@ from sgcad_core.reading.contacts.contact_records import ContactMention
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.text.compass import OPPOSITE_HAND, between, compass_of, turned
+from sgcad_core.records.course import Hand
 from sgcad_core.records.specs import ActorKind, Area, Compass
 
 
@@ -79,6 +80,8 @@ class OtherFacts:
     id: str
     kind: ActorKind
     word: str
+    hand: Hand | None = None
+    """On which hand of the vehicle that meets it a thing along the road lies, where that is told."""
 
 
 def others(

@@ -148,6 +148,8 @@ class NamedActors:
         fitting = fitting or [a for a in others if phrase.head in TRUCK_PARTS and a.kind in _TRUCKS]
         if phrase.stands and (standing := [a for a in fitting if a.stands]):
             fitting = standing
+        if phrase.part == "ahead" and not phrase.stands and (moving := [a for a in fitting if not a.stands]):
+            fitting = [a for a in moving if not a.subject] or fitting  # who drives ahead, not who is parked
         if phrase.order is not None:
             ordered = [a for a in fitting if a.order == phrase.order]
             return next(iter(ordered), None) or (

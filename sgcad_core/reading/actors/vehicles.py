@@ -79,7 +79,7 @@ class Roster:
 
     @property
     def called(self) -> dict[str, str]:
-        """Number in the text -> the actor's own id, where some are people, cyclists or animals: V1, B1, P1, A1."""
+        """Number in the text -> the actor's own id (V1, B1, P1, A1); of bystanders, behind all others."""
         counts: dict[str, int] = {}
         found: dict[str, str] = {}
         for v in self.vehicles:
@@ -88,7 +88,8 @@ class Roster:
             letter = "O" if v.beside else "A" if v.animal else letter
             counts[letter] = counts.get(letter, 0) + 1
             found[v.id] = f"{letter}{counts[letter]}" if v.counted or v.beside else v.id
-        return found
+        further = {name: f"V{counts.get('V', 0) + n}" for n, name in enumerate(self.bystanders, 1)}
+        return found | (further if self.counted else {})
 
     def resolve(self, sentence: str) -> str:
         """The sentence with every description or name of a vehicle replaced by its number."""
@@ -259,8 +260,7 @@ def _tow_owner(text: str) -> str | None:
     verb = rule("vehicles.tow_verb").search(text)
     if not verb:
         return None
-    named_behind = verb[0].endswith(("of ", "for "))
-    before = [] if named_behind else MENTION.findall(text[: verb.start()])
+    before = [] if verb[0].endswith(("of ", "for ")) else MENTION.findall(text[: verb.start()])
     before = before or MENTION.findall(text[verb.start() :])[:1] or MENTION.findall(text)
     return before[-1] if before else None
 

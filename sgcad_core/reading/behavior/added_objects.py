@@ -24,8 +24,9 @@ _SIZE_M: dict[str, tuple[float, float]] = {
     "house": (5.0, 5.0), "box": (1.0, 1.0), "bush": (1.0, 1.0), "rock": (1.0, 1.0), "boulder": (1.5, 1.5),
     "railing": (0.3, 10.0), "snowbank": (1.5, 8.0), "dumpster": (1.8, 2.0), "bridge": (0.8, 12.0),
     "abutment": (1.0, 3.0), "ditch": (2.0, 12.0), "culvert": (1.0, 1.2), "berm": (1.5, 10.0), "hedge": (1.0, 6.0),
+    "median": (1.0, 14.0), "curb": (0.3, 12.0), "divider": (0.6, 14.0), "island": (1.5, 8.0),
     "cable": (0.3, 14.0), "shrub": (1.0, 1.0), "trunk": (0.6, 0.6), "stump": (0.5, 0.5), "column": (0.8, 0.8),
-    "curb": (0.3, 1.5), "curbing": (0.3, 1.5), "median": (1.2, 12.0), "island": (2.0, 4.0), "hole": (0.8, 0.8),
+    "curbing": (0.3, 12.0), "hole": (0.8, 0.8),
     "pothole": (0.6, 0.6), "swale": (2.0, 12.0), "pillar": (0.8, 0.8), "bollard": (0.2, 0.2),
     "garage": (5.0, 5.0), "shed": (3.0, 3.0),
 }  # fmt: skip

@@ -18,7 +18,7 @@ from sgcad_core.reading.language import rule
 from sgcad_core.reading.reading import Reading
 from sgcad_core.reading.text.normalise import Sentence
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
-from sgcad_core.records.specs import Actor, ActorKind, BehaviorSpec
+from sgcad_core.records.specs import Actor, ActorKind, BehaviorSpec, Maneuver
 
 _QUEUED, _MOST = 2, 12
 """Vehicles that are drawn of a queue, and actors of a behavior in all."""
@@ -37,6 +37,8 @@ class _Told(NamedTuple):
     """Whether the vehicle goes round it, be it off the road."""
     letter: str = "V"
     """First letter of its id."""
+    drives: bool = False
+    """Whether it drives ahead and slows; else it stands."""
 
 
 def with_company(behavior: BehaviorSpec, reading: Reading) -> BehaviorSpec:
@@ -55,15 +57,16 @@ def with_company(behavior: BehaviorSpec, reading: Reading) -> BehaviorSpec:
             continue
         name = told.name or free_name(taken, told.letter)
         taken.add(name)
-        actors.append(_ahead(told.kind, name, leader))
+        actors.append(_ahead(told, name, leader))
     return behavior.model_copy(update={"actors": tuple(actors)})
 
 
-def _ahead(kind: ActorKind, name: str, leader: Actor) -> Actor:
-    walks = actor_kind(kind).walks
+def _ahead(told: _Told, name: str, leader: Actor) -> Actor:
+    walks = actor_kind(told.kind).walks
+    stands: Maneuver = "slowing" if told.drives and leader.maneuver != "stopped" else "stopped"
     return Actor(
-        id=name, kind=kind, road=leader.road, direction=leader.direction, lane=None if walks else leader.lane,
-        exit_road=None if walks else leader.exit_road, maneuver="straight" if walks else "stopped",
+        id=name, kind=told.kind, road=leader.road, direction=leader.direction, lane=None if walks else leader.lane,
+        exit_road=None if walks else leader.exit_road, maneuver="straight" if walks else stands,
     )  # fmt: skip
 
 
@@ -83,7 +86,7 @@ def _told(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:
     alone = sum(a.record.drives for a in behavior.actors) <= _PAIR
     walkers = any(a.record.exposed for a in behavior.actors)
     story = [s for s in reading.sentences if s.role in (*STORY_ROLES, "road") and s.start <= last]
-    vehicles = [t for s in story for t in _vehicles(s)]
+    vehicles = [*_leads(behavior, reading)] or [t for s in story for t in _vehicles(s, reading)]
     queues = [t for s in story for t in _queue(s)][:_QUEUED] if alone and not vehicles else []
     people = [] if walkers else [t for s in story for t in (*_people(s), *_avoided(s))][:1]
     ahead = vehicles or [t for s in story for t in _avoided_vehicles(s)]
@@ -96,17 +99,33 @@ def _queue(sentence: Sentence) -> Iterator[_Told]:
         yield from [_Told("car", None, _named_before(sentence.text, match.start()))] * _QUEUED
 
 
-def _vehicles(sentence: Sentence) -> Iterator[_Told]:
+def _vehicles(sentence: Sentence, reading: Reading) -> Iterator[_Told]:
     elsewhere = rule("company.elsewhere")
     for match in rule("company.waits_for").finditer(sentence.text):
         where = match["where"] or ""
         in_front = "in front of" in where or "ahead of" in where
         if in_front or not elsewhere.search(f"{match['words']} {where}"):
-            yield _Told(vehicle_kind(match["words"]), match["id"], _named_before(sentence.text, match.start()))
+            yield _Told(
+                vehicle_kind(match["words"]), reading.actor(match["id"]), _named_before(sentence.text, match.start())
+            )
     for match in rule("company.waits_for_another").finditer(sentence.text):
         here = "same" in (match["where"] or "")
         if here or not elsewhere.search(match[0].replace(" behind ", " ", 1)):
             yield _Told(vehicle_kind(match["kind"]), None, _named_before(sentence.text, match.start()))
+
+
+def _leads(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:
+    """The vehicle ahead of the subject, where the subject is met from behind; it has no part in the contact."""
+    first, ids = behavior.first_meeting, {a.id for a in behavior.actors}
+    subject = next((v.id for v in reading.crash.vehicles), None)
+    if first is None or first.struck != subject or first.struck_area != "back" or not reading.crash.unnumbered:
+        return
+    for sentence in reading.sentences:
+        for match in rule("company.leads").finditer(sentence.text):
+            name = reading.actor(match["id"] or match["ahead"] or match["behind"])
+            if name not in ids:
+                stands = rule("company.leads_standing").search(sentence.text)
+                yield _Told(vehicle_kind(match["words"] or match["kind"] or "car"), name, subject, drives=not stands)
 
 
 def _people(sentence: Sentence) -> Iterator[_Told]:

@@ -47,8 +47,7 @@ class _CourseReader:
     leaving: DepartureReader = field(default_factory=DepartureReader)
     moves: list[tuple[MoveHeard, Source, int]] = field(default_factory=list)
     """Each with its sentence and its place in it."""
-    passed: bool = False
-    """Whether it went through a junction."""
+    passed: bool = False  # through a junction
 
     def add(self, name: str, value: Any, source: Source) -> None:
         """Take a fact of the course unless it is known."""
@@ -83,14 +82,11 @@ class ImpactRead(NamedTuple):
 
 
 def courses_told(
-    statements: Sequence[Statement],
-    segments: Sequence[Segment],
-    roster: Roster,
-    coded: Mapping[str, ManeuverCue] | None = None,
-    event: Untouched | None = None,
-) -> CoursesRead:
+    statements: Sequence[Statement], segments: Sequence[Segment], roster: Roster,
+    coded: Mapping[str, ManeuverCue] | None = None, event: Untouched | None = None, *, unhit: bool = False,
+) -> CoursesRead:  # fmt: skip
     """The course of every vehicle as told. `segments`: of `acting_segments`; `coded`: losses of control by codes;
-    `event`: what stands for the impact where nothing is touched."""
+    `event`: what stands for the impact where nothing is touched; `unhit`: nothing is, so that all comes before it."""
     impact = min((t.number for t in statements if t.role == "impact"), default=10_000)
     impact = event.source.number if event else impact
     from_median = counts_from_median([t.text for t in statements], roster)
@@ -104,6 +100,8 @@ def courses_told(
             continue
         for vehicle in segment.subjects:
             _read(heard[vehicle], segment, impact, words, late=late)
+            if unhit:
+                _read_spin(heard[vehicle], segment, segment.text)
         late = is_late(segment, impact, late)
     if event and event.kind == "rollover":
         heard[event.vehicle].add("rolls", True, event.source)
@@ -113,6 +111,15 @@ def courses_told(
     sources = {f"{v} {name}": source for v, one in heard.items() for name, source in one.sources.items()}
     places = {f"{v} {name}": at for v, one in heard.items() for name, at in one.places.items()}
     return CoursesRead(courses, sources, places)
+
+
+def before_near_miss(read: CoursesRead, *, of_thing: bool) -> CoursesRead:
+    """What is kept of courses where no contact comes about: a loss of control with its spin; of one that nearly strikes
+    a thing its way off the road too. Evasions are told apart from these."""
+    kept = ("lost_control", "spin", "spin_deg", *(("departs", "moves") if of_thing else ()))
+    courses = {who: CourseTold(**{name: getattr(told, name) for name in kept}) for who, told in read.courses.items()}
+    sources = {name: source for name, source in read.sources.items() if name.split()[1].split(".")[0] in kept}
+    return CoursesRead({who: told for who, told in courses.items() if not told.empty}, sources, read.places)
 
 
 def _read(one: _CourseReader, segment: Segment, impact: int, event: str, *, late: bool = False) -> None:
@@ -128,7 +135,7 @@ def _read(one: _CourseReader, segment: Segment, impact: int, event: str, *, late
         one.add("inside", True, Source(segment.number, m[0], "course_evasion.in_junction"))
     if segment.role not in RETOLD and early:
         _read_departure(one, segment, before)
-        _read_early_roll(one, segment, before)
+        _read_roll(one, segment, before, early=True)
     if behind:
         _read_spin(one, segment, behind)
         _read_rest(one, segment, behind)
@@ -166,14 +173,6 @@ def _read_departure(one: _CourseReader, segment: Segment, text: str) -> None:
         one.sources["departs"] = Source(segment.number, found.words, found.rule)
 
 
-def _read_early_roll(one: _CourseReader, segment: Segment, text: str) -> None:
-    """A vehicle that rolls over before it touches anything; "rolled over" alone may tell of a line that it crossed."""
-    rolled = rule("course_rest.rolled").search(text)
-    if rolled and (rule("course_rest.quarters").search(text) or "turn" in rolled[0].lower()):
-        one.add("rolls", True, Source(segment.number, rolled[0], "course_rest.rolled"))
-        _read_roll(one, segment, text)
-
-
 def _keep_moves(one: _CourseReader) -> None:
     """The moves on the way to the contact, where there are several; their sources are "moves.0" and so on."""
     kept = wandering([move for move, *_ in one.moves])
@@ -207,10 +206,7 @@ def _read_spin(one: _CourseReader, segment: Segment, text: str) -> None:
 def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
     clause = _rest_clause(segment, text)
     known = "rest.at" in one.sources
-    rolled = rule("course_rest.rolled").search(text)
-    if rolled:
-        one.add("rolls", True, Source(segment.number, rolled[0], "course_rest.rolled"))
-        _read_roll(one, segment, text)
+    rolled = _read_roll(one, segment, text)
     lies = (clause, text) if rolled else (clause,)
     told = ((wording, wording.search(part)) for part in lies if part for wording in of_role("attitude"))
     for wording, lying in ((wording, lying) for wording, lying in told if lying):
@@ -229,14 +225,19 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
         _read_lane(one, segment, clause)
 
 
-def _read_roll(one: _CourseReader, segment: Segment, text: str) -> None:
-    """How far it rolled, and with which side leading."""
-    m = rule("course_rest.quarters").search(text)
+def _read_roll(one: _CourseReader, segment: Segment, text: str, *, early: bool = False) -> bool:
+    """Whether it rolled over, how far, with which side leading; `early`, before any contact, "rolled over" alone may
+    tell of a line that it crossed."""
+    rolled, m = rule("course_rest.rolled").search(text), rule("course_rest.quarters").search(text)
+    if not rolled or (early and not m and "turn" not in rolled[0].lower()):
+        return False
+    one.add("rolls", True, Source(segment.number, rolled[0], "course_rest.rolled"))
     if m and 0 < (count := number(m["count"])) <= _MOST_QUARTERS:
         one.add("roll_quarters", count, Source(segment.number, m[0], "course_rest.quarters"))
     if m := rule("course_rest.rolls_to").search(text):
         hand: Hand = "left" if next(filter(None, m.groups())).lower() == "left" else "right"
         one.add("rolls_to", hand, Source(segment.number, m[0], "course_rest.rolls_to"))
+    return True
 
 
 def _read_distance(one: _CourseReader, segment: Segment, text: str) -> None:

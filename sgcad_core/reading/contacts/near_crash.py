@@ -18,6 +18,7 @@ from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.sentence_roles import CRASH_ROLES, Role, is_impact
+from sgcad_core.records.course import HANDS, Hand
 from sgcad_core.records.specs import EvasiveManeuver
 
 _READ: frozenset[Role] = CRASH_ROLES | {"other"}
@@ -26,6 +27,7 @@ _NEAR = 1
 _M = {"inch": 0.0254, "inches": 0.0254, "foot": 0.3048, "feet": 0.3048, "ft": 0.3048, "cm": 0.01}
 _NUMBERS = {"a": 1, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6}
 _RANGE_M = (0.1, 10.0)
+_AVOIDS = ("near_events.act", "near_events.went_back")
 
 
 class EvasionTold(NamedTuple):
@@ -34,6 +36,16 @@ class EvasionTold(NamedTuple):
     vehicle: str
     maneuver: EvasiveManeuver
     source: Source
+
+    def beside(self, change: int) -> EvasiveManeuver | None:
+        """The maneuver beside a change of lanes, 1 to the left, -1 to the right: without the steering that is that
+        change, None where it is no more; with its hand where it leads back from it."""
+        hand = {1: "left", -1: "right"}.get(change)
+        if hand and self.maneuver.endswith(f"steering_{hand}") and self.source.words.lower().startswith(_MOVES):
+            return "braking" if self.maneuver.startswith("braking") else None
+        if not hand or self.source.rule != RETURNS or not self.maneuver.endswith("steering"):
+            return self.maneuver
+        return f"{self.maneuver}_{'right' if change > 0 else 'left'}"  # type: ignore[return-value]
 
 
 class NearMiss(NamedTuple):
@@ -71,11 +83,36 @@ def near_miss(
         denied = [t for t in statements if rule("near_events.denied").search(t.text)]
         silent = not any(tells_hit(t) for t in statements if t not in denied)
         together = silent and (of_study or (no_crash and denied))
-        return NearMiss() if together and len(roster.ids) > 1 else None
+        return _together(segments, roster) if together and len(roster.ids) > 1 else None
     first = missed[0]
     pair = (first.actor, first.other)
     clearance = next((m for t in statements if t.role in _READ and (m := told_clearance_m(t.text))), None)
     return NearMiss(missed, evaded(segments, first.number, pair, roster.ids[0]), clearance)
+
+
+def drifts_to(near: NearMiss, statements: Sequence[Statement], hand: Hand | None) -> tuple[NearMiss, Hand | None]:
+    """The near miss of a thing, and the hand on which it lies; `hand`: as far as that is told.
+
+    What steers to that hand, or steers without avoiding anything, leads to the thing: it is no evasion.
+    """
+    texts = {t.number: t.text for t in statements}
+    kept = []
+    for evasion in near.evasions:
+        side = next((h for h in HANDS if evasion.maneuver.endswith(f"steering_{h}")), None)
+        avoids = rule("near_events.avoids").search(texts.get(evasion.source.number, ""))
+        if side is None or (avoids and side != hand):
+            kept.append(evasion)
+        else:
+            hand = hand or side
+    return near._replace(evasions=tuple(kept)), hand
+
+
+def _together(segments: Sequence[Segment], roster: Roster) -> NearMiss:
+    """Two that come together, with what they do to avoid each other."""
+    watched = roster.ids[0]
+    acts = [s for s in segments if rule(RETURNS).search(s.text) or (watched in s.subjects and _acts(s))]
+    found = (e for s in acts for e in evaded([s], s.number, roster.ids[:2], watched))
+    return NearMiss(evasions=tuple({e.vehicle: e for e in found}.values()))
 
 
 def near_misses(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:
@@ -103,16 +140,30 @@ def _missed(statement: Statement, roster: Roster) -> tuple[ContactMention, ...]:
     return ()
 
 
-def before_evasion(segments: Iterable[Segment]) -> tuple[Segment, ...]:
+def _acts(segment: Segment) -> bool:
+    return bool(rule("near_events.act").search(segment.text))
+
+
+def before_evasion(
+    segments: Iterable[Segment], near: NearMiss | None = None, watched: str | None = None
+) -> tuple[Segment, ...]:
     """Segments cut before the evasion: the rest is the approach of the vehicle.
 
-    Braking to avoid a contact is no maneuver before it.
+    Braking to avoid a contact is no maneuver before it; that of one who is nearly struck, or of another vehicle than
+    the `watched` one, is, unless it avoids anything.
     """
-    return tuple(map(_before_evasion, segments))
+    hits = near.contact_mentions if near else ()
+    struck = {hit.other for hit in hits} - {hit.actor for hit in hits}
+    return tuple(
+        _before_evasion(s, yields=set(s.subjects) <= struck or watched not in (None, *s.subjects)) for s in segments
+    )
 
 
-def _before_evasion(segment: Segment) -> Segment:
-    act = rule("near_events.act").search(segment.text)
+def _before_evasion(segment: Segment, *, yields: bool) -> Segment:
+    act, back = (rule(name).search(segment.text) for name in _AVOIDS)
+    if act and yields and not rule("near_events.avoids").search(segment.text, act.start()):
+        act = None
+    act = min(filter(None, (act, back)), key=lambda m: m.start(), default=None)
     text = segment.text[: act.start()] if act else segment.text
     return segment._replace(text=text, role="approach" if segment.role in _READ else segment.role)
 
@@ -124,14 +175,15 @@ def _could_not(match: re.Match[str]) -> bool:
 def evaded(segments: Sequence[Segment], number: int, pair: tuple[str, ...], watched: str) -> tuple[EvasionTold, ...]:
     """Evasions of a pair in a sentence or beside it, one maneuver each.
 
-    Of vehicles other than the `watched` one only acts done to avoid count: others brake for reasons of their own.
+    Of vehicles other than the `watched` one only acts done to avoid count, and going back into a lane: others brake for
+    reasons of their own.
     """
     found: dict[str, EvasionTold] = {}
     for segment in sorted(segments, key=lambda s: (abs(s.number - number), s.number)):
         if abs(segment.number - number) > _NEAR or segment.role not in _READ:
             continue
         for vehicle in segment.subjects:
-            told = vehicle == watched or rule("near_events.act").search(segment.text)
+            told = vehicle == watched or any(rule(act).search(segment.text) for act in _AVOIDS)
             if vehicle in pair and vehicle not in found and told and (how := _maneuver(segment)):
                 found[vehicle] = EvasionTold(vehicle, *how)
     return tuple(found.values())
@@ -144,6 +196,11 @@ def _maneuver(segment: Segment) -> tuple[EvasiveManeuver, Source] | None:
         return None
     first = min(told.values(), key=lambda m: m.start())
     source = Source(segment.number, first.group(), "near_events.evasion")
+    if back := told.get("returns"):
+        way = back["way"] or back["way2"] or back["hand"]
+        maneuver: EvasiveManeuver = f"steering_{way}" if way else "steering"  # type: ignore[assignment]
+        source = source._replace(rule=RETURNS)
+        return (_BRAKING[maneuver] if "brakes" in told else maneuver), source
     if "steers" not in told:
         return ("braking" if "brakes" in told else "accelerating"), source
     side = told["steers"]["side"] or told["steers"]["lane"]
@@ -152,6 +209,10 @@ def _maneuver(segment: Segment) -> tuple[EvasiveManeuver, Source] | None:
     return (_BRAKING[maneuver] if "brakes" in told else maneuver), source
 
 
+_MOVES = ("chang", "mov", "pull", "drift")
+"""Beginnings of verbs of steering that tell a change of lanes as well."""
+RETURNS = "near_events.went_back"
+"""Rule of an evasion back into the lane from which its vehicle began to change."""
 _BRAKING: dict[EvasiveManeuver, EvasiveManeuver] = {
     "steering": "braking_and_steering", "steering_left": "braking_and_steering_left",
     "steering_right": "braking_and_steering_right",

@@ -43,6 +43,16 @@ class MoveHeard(NamedTuple):
     at: int
 
 
+def hand_of_thing(word: str, texts: Sequence[str]) -> Hand | None:
+    """The hand of a vehicle on which texts tell a thing of that name to lie; left of a median where none is told."""
+    told = [m for text in texts for m in rule("departures.thing_hand").finditer(text)]
+    for names, side in (("first", "before"), ("thing", "behind")):
+        for m in told:
+            if m[names] and m[names].lower().rpartition(" ")[2] in word:
+                return "right" if m[side].lower() == "right" else "left"
+    return "left" if any(m["between"] and m["between"].lower() in word for m in told) else None
+
+
 @dataclass
 class DepartureReader:
     """What was heard so far of one vehicle."""

@@ -59,12 +59,24 @@ def infer_crash(crash: CrashTold) -> CrashInferred:
 
 
 def _still_moving(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
-    """In a near crash, makes a vehicle that comes to a stop slow; a vehicle that stood all the time stays stopped."""
+    """In a near crash, makes a vehicle that comes to a stop slow, and sets one going that stood and then evades; a
+    vehicle that stood all the time stays stopped."""
+    evades = {e.vehicle: e.source.number for e in crash.near.evasions} if crash.near else {}
     pair = {name for b in pairs[:1] for name in (b.actor, b.other)} or set(crash.roster.ids[:2])
-    for v in sorted(pair) if crash.near else ():
+    lone = crash.roster.counted and not crash.contact_mentions  # one that "brakes to stop" and touches nothing
+    for v in sorted(pair) if crash.near or lone else ():
         source = inferred.sources.get(f"{v} maneuver")
-        if inferred.maneuvers[v] == "stopped" and source and rule("near_events.came_to_stop").match(source.words):
+        comes = source and rule("near_events.came_to_stop").match(source.words)
+        if inferred.maneuvers[v] == "stopped" and comes and (crash.near or comes[0].startswith("to")):
             inferred.maneuvers[v] = "slowing"
+            continue
+        stood = inferred.maneuvers[v] == "stopped" or (
+            crash.motions[v].has_cue("stopped") and source is not None and source.rule == "near_deeds.follows_suit"
+        )
+        if stood and source and source.number <= evades.get(v, -1):
+            inferred.maneuvers[v] = "straight"
+            inferred.told_maneuvers.discard(v)
+            inferred.started.add(v)
 
 
 def _set_going(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:

@@ -13,6 +13,7 @@ from sgcad_core.reading.contacts.near_crash import NearMiss
 from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.motion.motion_record import Source, VehicleMotion
 from sgcad_core.reading.text.area_phrases import Zone
+from sgcad_core.records.course import Hand
 from sgcad_core.records.specs import Area, Compass, Maneuver
 
 TURN_DEG: dict[Maneuver, float] = {
@@ -41,6 +42,8 @@ class CrashTold:
     """Of a report that tells no contact: `contact_mentions` are then those that did not come about."""
     walks: Mapping[str, WalkDirection] = field(default_factory=dict)
     """Directions of pedestrians and others without a number, by their word in `contact_mentions`."""
+    hands: Mapping[str, Hand] = field(default_factory=dict)
+    """On which hand things along the road lie, by their word in `contact_mentions`, where that is told."""
     missed: frozenset[frozenset[str]] = frozenset()
     """Pairs that the text tells to have nearly touched."""
     untouched: Untouched | None = None

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from sgcad_core.kinds import CHANGES
 from sgcad_core.reading.contacts.contact_records import ContactMention
+from sgcad_core.reading.contacts.near_crash import RETURNS
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.maneuvers import INTO_LANE_OF, INTO_LANE_OF_OTHER, OUT_OF_LANE_LEFT, SHIFTED
@@ -34,7 +35,9 @@ def change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactM
     """Directs a lane change without a told side: towards the flank of the contact, away from a told lane."""
     for v in crash.roster.ids:
         source = inferred.sources.get(f"{v} maneuver")
-        if inferred.maneuvers[v] in CHANGES and (hand := _hand_between(crash.motions[v])):
+        into = _lane_entered(crash, inferred, pairs, v)
+        hand = _hand_between(crash.motions[v], into) or _hand_left(crash, v)
+        if inferred.maneuvers[v] in CHANGES and hand:
             inferred.maneuvers[v] = "lane_change_left" if hand == "left" else "lane_change_right"
             continue
         if (
@@ -50,6 +53,7 @@ def change_hands(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactM
             "right" in (own or "").split("/")
             or "left" in (other or "").split("/")
             or crash.motions[v].lane_word == "left"
+            or _meets_merging(inferred, hit, v)
         )
         if told == "right" or (told is None and towards):
             inferred.maneuvers[v] = "lane_change_right"
@@ -69,9 +73,34 @@ def passing_by(crash: CrashTold, inferred: CrashInferred) -> None:
             inferred.told_maneuvers.discard(v)
 
 
-def _hand_between(motion: VehicleMotion) -> Hand | None:
+def _hand_left(crash: CrashTold, v: str) -> Hand | None:
+    """The hand of a lane change from which one steers back, as told, to the other hand."""
+    backs = (
+        (e.maneuver for e in crash.near.evasions if e.vehicle == v and e.source.rule == RETURNS) if crash.near else ()
+    )
+    return next(("right" if how.endswith("left") else "left" for how in backs if not how.endswith("steering")), None)
+
+
+def _meets_merging(inferred: CrashInferred, hit: ContactMention | None, v: str) -> bool:
+    """Whether the other one of a contact merges, which it does from the right."""
+    return hit is not None and inferred.maneuvers.get(hit.other if hit.actor == v else hit.actor) == "merge"
+
+
+def _lane_entered(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention], v: str) -> str:
+    """The word of the lane into which one changes: told, else that of the one that it comes before and that keeps its
+    lane."""
+    motion = crash.motions[v]
+    hit = next((b for b in pairs if v in (b.actor, b.other)), None)
+    other = hit and (hit.other if hit.actor == v else hit.actor)
+    source = inferred.sources.get(f"{v} maneuver")
+    if motion.to_lane is None and other and source and source.rule in (INTO_LANE_OF, INTO_LANE_OF_OTHER):
+        return str(crash.motions[other].lane_word) if inferred.maneuvers[other] not in CHANGES else ""
+    return str(motion.to_lane)
+
+
+def _hand_between(motion: VehicleMotion, into: str) -> Hand | None:
     """The hand on which the lane lies into which it changes, by the words of both lanes; None where one is open."""
-    start, end = _FROM_RIGHT.get(str(motion.lane_word)), _FROM_RIGHT.get(str(motion.to_lane))
+    start, end = _FROM_RIGHT.get(str(motion.lane_word)), _FROM_RIGHT.get(into)
     if start is None or end is None or start == end:
         return None
     return "left" if end > start else "right"

@@ -26,15 +26,23 @@ def beside_road(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMe
                 inferred.sources[f"{met} maneuver"] = Source(b.number, b.words, "infer.beside_road")
 
 
+_GOES_ON = ("near_deeds.goes_on", "deeds.moved_on", "deeds.came_on")
+"""Rules of words that tell that one drives, not where to."""
+
+
 def from_turn_lane(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
     """Turns a vehicle of which nothing is told but its turn lane, where it meets one that is told to come another
     way."""
     turns: dict[str, Maneuver] = {"left_turn": "turn_left", "right_turn": "turn_right"}
-    for b in () if crash.near else pairs[:1]:
+    for b in pairs[:1]:
         for v, other in ((b.actor, b.other), (b.other, b.actor)):
             turn = turns.get(crash.motions[v].lane_word or "")
             silent = f"{v} maneuver" not in inferred.sources and inferred.maneuvers[v] == "straight"
             told = {v, other} <= inferred.stated and inferred.headings[v] != inferred.headings[other]
+            if crash.near:  # of a study headings are not told: it meets one that is not told to drive its way
+                source = inferred.sources.get(f"{v} maneuver")
+                silent = inferred.maneuvers[v] == "straight" and (source is None or source.rule in _GOES_ON)
+                told = not any(kin == "same" for me in (v, other) for _, kin, *_ in crash.motions[me].relations)
             if turn and silent and told:
                 inferred.maneuvers[v] = turn
                 inferred.sources[f"{v} maneuver"] = Source(b.number, b.words, "infer.from_turn_lane")

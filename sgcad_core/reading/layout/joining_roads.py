@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sgcad_core.kinds import ALLEY, DRIVEWAY, JOINING, RAMP
+from sgcad_core.reading.inference.inference_state import QUARTER_DEG
 from sgcad_core.reading.layout.lanes_used import least_lanes
 from sgcad_core.reading.layout.leg_parts import curve_of
 from sgcad_core.reading.motion.motion_record import DRIVES
@@ -41,6 +42,18 @@ def across_drive(street: RoadFact, streets: list[RoadFact], heading: Compass | N
     if other is None:
         return replace(street, axis=axis_of(turned(heading, 90)), lanes=told, curve=())
     return replace(other, lanes=told) if other.lanes == LaneFacts() and (told.total or 0) > 2 else other
+
+
+def stem_of(facts: RoadFacts, flow: Compass) -> Compass:
+    """The bearing of a side road as told, else where the turn lane leads of one that drives with the flow, else as
+    inferred, or right of it."""
+    stem = facts.junction.stem
+    if stem and (facts.junction.stem_stated or any(v.maneuver in QUARTER_DEG for v in facts.crash.vehicles)):
+        return stem
+    words = {v.lane_word for v in facts.crash.vehicles if v.heading == flow}
+    if "left_turn" in words and "right_turn" not in words:
+        return turned(flow, -90)
+    return stem or turned(flow, 90)
 
 
 def ramp_alone(facts: RoadFacts) -> tuple[Leg, ...]:

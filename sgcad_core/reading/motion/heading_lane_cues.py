@@ -153,6 +153,8 @@ def read_lane(motion: VehicleMotion, text: str, from_median: bool = False) -> No
             text[: m.start()]
         ):
             continue
+        if rule("surroundings.lane_of_passed").search(text[: m.start()]):
+            continue
         if m.group("turn") and rule("surroundings.lane_of_road").search(text[: m.start()]):
             continue
         center = _center_lane(text, m)

@@ -19,7 +19,7 @@ _NOT = rule("deeds.not")
 _HOPED = ("overtaking", "lane_change", "lane_change_left", "lane_change_right", "merge")
 """What a vehicle may wait or prepare to do and never does."""
 _SIDES = ("side", "side2", "side3", "side4", "side5", "side6", "side7", "side8")
-_FROM = ("fromside", "streetside", "roadside", "nearside")
+_FROM = ("fromside", "wayside", "streetside", "roadside", "nearside")
 _TURNS = ("turn_left", "turn_right")
 _BY_ANGLE = {90: "right", 135: "right", 225: "left", 270: "left"}
 """The hand of a turn by its change of heading, clockwise degrees."""

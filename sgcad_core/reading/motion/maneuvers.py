@@ -9,7 +9,7 @@ from typing import NamedTuple, cast
 
 from sgcad_core.kinds import RAMP
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.motion.motion_record import ManeuverCue, VehicleMotion
+from sgcad_core.reading.motion.motion_record import DRIVES, ManeuverCue, VehicleMotion
 from sgcad_core.records.specs import Area, Maneuver
 
 _SURE: tuple[Maneuver, ...] = ("parked", "backing", "u_turn")
@@ -106,6 +106,8 @@ def _stands(states: list[ManeuverCue]) -> Maneuver:
 
 def _moving_since(motion: VehicleMotion, since: list[ManeuverCue]) -> Decision:
     """The maneuver of a vehicle that moves: a turn, meant before or made, else a change of lane, else straight on."""
+    if motion.origin in DRIVES:  # who turns out of a driveway over a lane line changes no lanes
+        since = [d for d in since if d.kind not in _CHANGES or not rule("deeds.over_lane_line").search(d.words)]
     turns = [d for d in since if d.kind in _TURNS]
     if turns and not _went_on(turns[-1], since):
         return _as_told(turns[-1])

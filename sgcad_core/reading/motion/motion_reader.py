@@ -120,6 +120,7 @@ def _read(
     """`most`: the highest weight; what is told again behind the impact (`after`) is another witness."""
     text = _until_stopped(rule("motion_reader.brackets").sub(" ", segment.text), after)
     if motion.ordered:
+        text = text.replace(f"{vehicle.lower()}'s ", "its ")
         text = rule("motion_reader.strangers").sub(lambda m: " " * len(m[0]), text)
     weight = _weight(segment, most)
     before_hit = _until_hit(text) if segment.role != "rest" else _until_rest(text)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from sgcad_core.reading.actors.vehicles import VehicleDescription
 from sgcad_core.reading.contacts.contact_records import ContactFacts, ContactMention
+from sgcad_core.reading.contacts.near_crash import RETURNS
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
 from sgcad_core.reading.motion.maneuvers import meant_turn
@@ -95,7 +96,16 @@ def crash_provenance(builder: FactBuilder, read: StageResults) -> Iterator[Fact]
         yield builder.stated(f"others.{other.id}.word", other.word, source)
     for number, contact in enumerate(read.crash.contacts):
         yield from _contact(builder, f"contacts.{number}", contact, read)
+    yield from _evasions(builder, read)
     yield from _conditions(builder, read)
+
+
+def _evasions(builder: FactBuilder, read: StageResults) -> Iterator[Fact]:
+    """What was done to avoid a near crash; going back into a lane apart."""
+    sources = {e.vehicle: e.source for e in read.crash_told.near.evasions} if read.crash_told.near else {}
+    for vehicle, maneuver in read.crash.near_crash.evasions if read.crash.near_crash else ():
+        name = "back_in_lane" if sources[vehicle].rule == RETURNS else "evasion"
+        yield builder.stated(f"near_crash.{vehicle}.{name}", maneuver, sources[vehicle])
 
 
 # ------------------------------------------------------------------ vehicles

@@ -8,7 +8,7 @@ import pytest
 from sgcad_core.account.actors import actor_items
 from sgcad_core.account.assumed import assumed_items
 from sgcad_core.account.build import account_of
-from sgcad_core.account.contacts import contact_items
+from sgcad_core.account.contacts import _evasion_items, contact_items
 from sgcad_core.account.inputs import ExecutedCase, is_stated
 from sgcad_core.account.motion import judged, motion_items
 from sgcad_core.account.notes import notes_of
@@ -299,3 +299,34 @@ def test_a_vehicle_that_left_the_road_and_came_back_is_judged_by_its_moves(made,
     crash = replace(made.reading.crash, courses={"V1": course})
     told = replace(made, reading=replace(made.reading, crash=crash))
     assert (judged(told, "V1", "departs", fact("vehicles.V1.departs", "right")) is not None) is asked
+
+
+def test_evasions_of_a_near_crash_are_facts_with_their_sentence():
+    text = (
+        "Subject is behind a van. The van brakes. Subject brakes and steers left to avoid hitting the van in the rear."
+    )
+    told = {one.field: one for one in read(text).facts}["near_crash.V1.evasion"]
+    assert (told.value, told.start) == ("braking_and_steering_left", text.index("Subject brakes"))
+
+
+@pytest.mark.parametrize(("told", "speed", "left_m", "missed"), [
+    ("braking", (15.0, 8.0), 0.0, None),
+    ("braking", (15.0, 14.5), 0.0, "it hardly brakes"),
+    ("steering_left", (15.0, 15.0), 1.0, None),
+    ("steering_right", (15.0, 15.0), 1.0, "it hardly steers aside"),
+    ("braking_and_steering", (15.0, 15.0), -1.0, "it hardly brakes"),
+])  # fmt: skip
+def test_a_told_evasion_that_is_hardly_driven_lacks(made, told, speed, left_m, missed):
+    case = telling(made, fact("near_crash.V1.evasion", told))
+    track = case.tracks["V1"]
+    share = np.linspace(0.0, 1.0, len(track.t_s))
+    x, y, heading = track.x_m[0], track.y_m[0], track.heading_rad[0]
+    along, aside = 40.0 * share, left_m * share
+    moved = track.model_copy(update={
+        "x_m": x + along * np.cos(heading) - aside * np.sin(heading),
+        "y_m": y + along * np.sin(heading) + aside * np.cos(heading),
+        "heading_rad": np.full(len(share), heading), "speed_mps": speed[0] + (speed[1] - speed[0]) * share,
+    })  # fmt: skip
+    case.__dict__["tracks"] = {"V1": moved}
+    (item,) = _evasion_items(case, float(track.t_s[-1]))
+    assert (item.kind, item.reason) == (("has", "") if missed is None else ("lacks", missed))

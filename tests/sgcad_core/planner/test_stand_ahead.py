@@ -13,7 +13,7 @@ from sgcad_core.geometry.plane import gaps_where_near
 from sgcad_core.planner.company import led_by
 from sgcad_core.planner.lines.actor_course import find_course
 from sgcad_core.planner.plan import plan
-from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
+from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Evasion, NearCrash, size_m
 from tests.sgcad_core.planner.crash_scenes import network
 
 HIT = Contact(striker="V2", struck="V1", striker_area="front", struck_area="back")
@@ -92,3 +92,17 @@ def test_who_stands_ahead_of_whom(actor, leader):
     behavior = BehaviorSpec(actors=(car("V1", "stopped"), car("V2", "straight"), actor), contacts=(HIT,))
     found = led_by(behavior, actor)
     assert (found and found.id) == leader
+
+
+def test_one_that_slows_ahead_of_a_near_miss_drives_ahead_and_stops_first():
+    near = NearCrash(conflict=HIT, evasions=(Evasion(actor="V2", maneuver="braking"),))
+    actors = (car("V1", "slowing"), car("V2", "straight"), car("V3", "slowing"))
+    made = plan(BehaviorSpec(actors=actors, contacts=(), near_crash=near), network("straight"))
+    seen = {one.actor: np.column_stack((one.x_m, one.y_m, one.heading_rad)) for one in made.trajectories}
+    speed = {one.actor: one.speed_mps for one in made.trajectories}
+    size = size_m(actors[0])
+    assert gaps_where_near(seen["V1"], size, seen["V3"], size, 60.0).min() > 2.0
+    at = {name: stations("straight", actors[0], poses)[0] for name, poses in seen.items()}
+    assert (at["V3"] > at["V1"]).all()
+    assert speed["V3"][0] > 3.0
+    assert np.flatnonzero(speed["V3"] < 0.5)[0] <= np.flatnonzero(speed["V1"] < 0.5)[0]

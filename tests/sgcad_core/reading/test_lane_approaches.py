@@ -85,3 +85,9 @@ def test_opposite_approaches_have_the_totals_told_of_their_vehicles(
 def test_one_total_holds_for_both_legs() -> None:
     legs = _legs(AT + "V1 was southbound on a four-lane, undivided road. V2 was westbound. V1 struck V2.")
     assert {legs[name].lanes_in + legs[name].lanes_out for name in ("N", "S")} == {4}
+
+
+def test_the_side_road_of_a_left_turn_lane_lies_on_the_left():
+    text = "Subject driver is in a left turn lane and the lead vehicle brakes. Subject nearly hits the lead vehicle."
+    layout = layout_of_facts(read(text).roads)
+    assert {leg.bearing for leg in layout.legs} == {"N", "S", "W"}

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sgcad_core.metrics.labels.course_label_match import vehicle_marks
+from sgcad_core.metrics.labels.course_labels import CourseLabel, VehicleLabel
 from sgcad_core.metrics.labels.motion_label_match import Path
 from sgcad_core.metrics.labels.observed_crash import Crash, VehicleMotion, ahead_of
 from sgcad_core.planner import plan
@@ -41,3 +43,15 @@ def test_a_lane_that_ends_at_a_tee_goes_on_straight():
     edge, lane = one.home
     assert np.array_equal(ahead_of(network("tee"), edge, lane), lane.shape)
     assert np.array_equal(one.aside, one.off_line)
+
+
+def test_of_one_that_touches_nothing_the_whole_way_counts():
+    one = driven("curve", "W", "E", 1.2)
+    assert one.turns_from == 0
+    moved = 0.9 * np.sin(np.linspace(0.0, np.pi, len(one.path.t_s)))  # out of its lane and back
+    pose = one.path.pose + moved[:, None] * np.column_stack(
+        (-np.sin(one.path.pose[:, 2]), np.cos(one.path.pose[:, 2]), 0.0 * moved)
+    )
+    there = VehicleMotion(Crash({"V1": Path(one.path.t_s, pose, (4.7, 1.8))}, network("curve")), "V1")
+    label = CourseLabel("", {"V1": VehicleLabel(maneuver="lane_change_left")}, ())
+    assert vehicle_marks(label, there.crash)["V1"]["maneuver_any"] == 1.0

@@ -82,3 +82,20 @@ def test_one_that_leaves_the_road_to_avoid_an_animal_has_it_ahead_in_its_lane():
 
 def test_an_animal_that_is_struck_is_not_drawn_twice():
     assert joined("V1 was traveling north when a deer ran into the road. The front of V1 struck the deer.")[0] == []
+
+
+FROM_BEHIND = "The following vehicle nearly hits the subject vehicle in the rear."
+
+
+@pytest.mark.parametrize(("text", "expected"), [
+    ("Subject slows behind the lead vehicle, which slows.", [("V3", "car", "slowing")]),
+    ("Subject slows because the lead truck is stopped.", [("V3", "truck", "stopped")]),
+    ("Subject slows down for a light.", []),
+])  # fmt: skip
+def test_the_one_ahead_joins_where_the_subject_is_met_from_behind(text, expected):
+    assert joined(f"{text} {FROM_BEHIND}")[0] == expected
+
+
+def test_the_one_ahead_has_a_number_of_its_own_in_the_sentences():
+    reading = read(f"Subject slows behind the lead vehicle. {FROM_BEHIND}")
+    assert [reading.named_in(sentence) for sentence in reading.sentences] == [{"V1", "V3"}, {"V1", "V2"}]

@@ -98,3 +98,23 @@ def test_of_a_drowsy_subject_it_stays_that_he_drives() -> None:
     kept = redact("Subject driver is drowsy. The vehicle runs off the road on the right.")
     assert kept.startswith("Subject driver is driving. The vehicle")
     assert read(kept).crash.vehicles[0].maneuver == "departing_road_right"
+
+
+@pytest.mark.parametrize(("text", "hand"), [
+    ("Subject is tired and nearly hits the median.", "left"),
+    ("Subject is tired and nearly hits the curb on the right.", "right"),
+    ("Subject is tired, drifts right and nearly hits a mailbox.", "right"),
+    ("Subject steers left to avoid hitting a mailbox.", None),
+    ("Subject nearly hits a mailbox.", None),
+])  # fmt: skip
+def test_the_hand_of_a_thing_that_is_nearly_struck_is_told_or_follows_from_the_drift(text, hand):
+    crash = read(redact(text)).crash
+    assert crash.others[0].hand == hand
+    steers = [how for _, how in crash.near_crash.evasions if how.startswith("steering")]
+    assert bool(steers) == ("avoid" in text)
+
+
+def test_a_loss_of_control_is_told_of_a_near_crash_too():
+    text = "Subject loses control. Subject spins 180 degrees clockwise and nearly hits the guardrail on the right."
+    course = read(redact(text)).crash.driven["V1"]
+    assert (course.lost_control, course.spin, course.spin_deg, course.departs) == (True, "clockwise", 180.0, "right")

@@ -12,10 +12,12 @@ from typing import NamedTuple
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.planner.actor_plan import Drift
+from sgcad_core.kinds import CHANGES
+from sgcad_core.planner.actor_plan import Drift, Role
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.lines.path import ramp_length_m
 from sgcad_core.planner.motion import STEP_S, Motion
+from sgcad_core.records.specs import EvasiveManeuver
 
 MOST_STEER_M = 4.2
 """Sideways at most: a lane and a little."""
@@ -35,6 +37,14 @@ _PASSES_S = 2.0
 """Time beside the other one before the way back into the lane."""
 
 
+_WORDS: dict[EvasiveManeuver, str] = {
+    "none": "does not evade", "braking": "brakes", "steering": "steers aside", "steering_left": "steers left",
+    "steering_right": "steers right", "braking_and_steering": "brakes and steers aside",
+    "braking_and_steering_left": "brakes and steers left", "braking_and_steering_right": "brakes and steers right",
+    "accelerating": "accelerates",
+}  # fmt: skip
+
+
 class Reaction(NamedTuple):
     """The reaction of a driver from an own time on; shares 0 (nothing) to 1 of the most that a driver does."""
 
@@ -45,6 +55,8 @@ class Reaction(NamedTuple):
     """Sideways, to the left; the whole of it."""
     down_to_mps: float = 0.0
     """Braking ends at this speed."""
+    stays: bool = False
+    """Whether it stays where it steered to; else it comes back on its line."""
     hard: float = 1.0
     """Factor on the usual share of the friction that braking takes."""
 
@@ -81,7 +93,9 @@ def _steered(option: Option, motion: Motion, reaction: Reaction) -> Motion:
     speed = (ahead - station) / STEP_S
     length = ramp_length_m(reaction.left_m, _EASE * speed, _SWERVE_MPS2)
     holds = _PASSES_S * speed
-    dodge = Drift(0.0, reaction.left_m, length, station + length, back=True, holds_m=holds, note="steers aside")
+    dodge = Drift(
+        0.0, reaction.left_m, length, station + length, back=not reaction.stays, holds_m=holds, note="steers aside"
+    )
     steered = replace(option, dodge=dodge).motion
     late = steered.time_at(station) - reaction.from_s
     return replace(steered, time_s=steered.time_s - late)
@@ -123,3 +137,22 @@ def _integrated(motion: Motion, reaction: Reaction, gain_mps2: float, start_m: f
         speed = new
         found.append(at)
     return np.array(found)
+
+
+def returns_m(role: Role, maneuver: EvasiveManeuver) -> float:
+    """How far to the left an evasion leads back into the lane from which it began to change; 0 for others."""
+    change = CHANGES.get(role.actor.maneuver, 0)
+    back = bool(change) and maneuver.endswith("steering_right" if change > 0 else "steering_left")
+    return -change * role.course.lane_width_m if back else 0.0
+
+
+def told_of(role: Role, maneuver: EvasiveManeuver, done: Reaction, onset_s: float) -> str:
+    """The evasion of one actor, its strength and its beginning, in words."""
+    how = [
+        f"{a:.1f} m/s2" for a in (done.braking_mps2(role.grip_mps2), done.accelerating_mps2(role.grip_mps2)) if a > 0.05
+    ]
+    how += [f"{abs(done.left_m):.1f} m aside"] if done.left_m else []
+    words = _WORDS[maneuver]
+    if maneuver.endswith("steering"):
+        words = words.replace("steers aside", "steers left" if done.left_m > 0 else "steers right")
+    return f"{role.actor.id} {words} from {onset_s:.1f} s before the conflict on: {', '.join(how)}"

@@ -158,3 +158,17 @@ def test_who_cannot_come_near_from_rest_is_driving_and_a_note_says_so():
     closest = closest_approach(made.trajectories, sizes, ("V1", "V2"))
     assert avoided(told, first_contact(made.trajectories, sizes), closest)
     assert "V1 is not seen starting from rest" in made.notes
+
+
+@pytest.mark.parametrize(("maneuver", "lane", "beside", "back", "sign"), [
+    ("lane_change_left", 1, 2, "steering_right", 1.0), ("lane_change_right", 2, 1, "steering_left", -1.0),
+])  # fmt: skip
+def test_who_steers_back_from_a_lane_change_ends_in_its_first_lane(maneuver, lane, beside, back, sign):
+    side = "V1 left V2 right" if sign > 0 else "V1 right V2 left"
+    pair = actor("V1", maneuver, "E", lane=lane), actor("V2", "straight", "E", lane=beside)
+    made, closest = planned("straight_wide", near(side, ("V1", back)), *pair)
+    mine = track(made, "V1")
+    left_m = -(mine.y_m - mine.y_m[0])  # the road heads west: south is on the left
+    assert closest == pytest.approx(CLEARANCE_M, abs=0.05)
+    assert 0.5 < (sign * left_m).max() < 3.0
+    assert abs(left_m[-1]) < 0.3

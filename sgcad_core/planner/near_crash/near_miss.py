@@ -9,17 +9,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
 from sgcad_core.geometry.distances import box_distances
-from sgcad_core.planner.encounter.evasion import MOST_STEER_M, SLIGHT_STEER_M, Reaction, reacted
+from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, clock
+from sgcad_core.planner.near_crash.evasion import MOST_STEER_M, SLIGHT_STEER_M, Reaction, reacted, returns_m, told_of
+from sgcad_core.planner.near_crash.near_thing import is_beside_lanes, near_thing
 from sgcad_core.records.specs import Evasion, EvasiveManeuver, NearCrash
 
 ONSETS_S = (0.8, 1.1, 1.4, 1.7, 2.0, 2.4, 2.8, 3.3, 3.9, 4.6, 5.4)
@@ -40,12 +42,6 @@ _TO_EDGE_M = 0.3
 _BRAKING_TOO: dict[EvasiveManeuver, EvasiveManeuver] = {
     "steering": "braking_and_steering", "steering_left": "braking_and_steering_left",
     "steering_right": "braking_and_steering_right",
-}  # fmt: skip
-_WORDS: dict[EvasiveManeuver, str] = {
-    "none": "does not evade", "braking": "brakes", "steering": "steers aside", "steering_left": "steers left",
-    "steering_right": "steers right", "braking_and_steering": "brakes and steers aside",
-    "braking_and_steering_left": "brakes and steers left", "braking_and_steering_right": "brakes and steers right",
-    "accelerating": "accelerates",
 }  # fmt: skip
 
 
@@ -86,6 +82,20 @@ class _Side(NamedTuple):
         return float(at[0] - before[0]) / STEP_S, float(at[1] - before[1]) / STEP_S
 
 
+def near_encounter(conflicts: Conflicts, near: NearCrash) -> NearMiss:
+    """The encounter of a near crash: beside a thing off the lanes, else an ordinary conflict and its evasion."""
+    pair = conflicts.roles(near.conflict)
+    if is_beside_lanes(*pair):
+        return NearMiss(*near_thing(*pair, near))
+    made = as_near_miss(conflicts.as_they_drive(near.conflict), near)
+    started = [who for who, told in conflicts.told.items() if told.from_rest]
+    if made.encounter is not None or not started:
+        return made
+    rolling = {who: replace(told, from_rest=False) for who, told in conflicts.told.items()}
+    made = as_near_miss(replace(conflicts, told=rolling).as_they_drive(near.conflict), near)
+    return made._replace(notes=(*(f"{who} is not seen starting from rest" for who in started), *made.notes))
+
+
 def as_near_miss(found: Encounter | None, near: NearCrash) -> NearMiss:
     """An encounter as a near crash with the declared clearance, if there is an encounter and a way to avoid it."""
     if found is None:
@@ -122,7 +132,8 @@ class _Parting:
         """As stated; else by other means, with a note."""
         told = [e for e in near.evasions if e.maneuver != "none"]
         follows = near.conflict.striker_area == "front" and near.conflict.struck_area == "back"
-        parted = (self._evaded(told, told=False) or self._evaded(told)) if told else None
+        back = any(side.id == e.actor and returns_m(side.option.role, e.maneuver) for side in self.sides for e in told)
+        parted = ((None if back else self._evaded(told, told=False)) or self._evaded(told)) if told else None
         as_told = parted if told else None if follows else self._shifted()
         if as_told is not None:
             return as_told
@@ -151,6 +162,8 @@ class _Parting:
         acting = [(side, e.maneuver) for e in evasions for side in self.sides if side.id == e.actor and side.may_evade]
         if not acting:
             return None
+        if told and (made := self._returned(acting)):
+            return made
         sides = (1.0, -1.0) if any(m.endswith("steering") for _, m in acting) else (1.0,)
         for hard, onset, left in product((1.0, _HARD), ONSETS_S, sides):
             most = {s.id: self._most(s, m, onset, left)._replace(hard=hard) for s, m in acting}
@@ -158,6 +171,27 @@ class _Parting:
             if (share := self._share(most)) is not None:
                 return self._told(acting, most, share, onset)
         return None
+
+    def _returned(self, acting: list[tuple[_Side, EvasiveManeuver]]) -> NearMiss | None:
+        """Back into the lane from which one began to change, the latest so that the declared clearance is left."""
+        if not any(returns_m(side.option.role, how) for side, how in acting):
+            return None
+
+        def most(onset_s: float) -> dict[str, Reaction]:
+            found = {side.id: self._most(side, how, onset_s, 1.0) for side, how in acting}
+            back = {side.id: by for side, how in acting if (by := returns_m(side.option.role, how))}
+            return {who: r._replace(left_m=back[who], stays=True) if who in back else r for who, r in found.items()}
+
+        def clear(onset_s: float) -> bool:
+            motions = self._motions(most(onset_s), 1.0)
+            return all(m.drivable for m in motions) and self._least(motions) >= self.closest_m
+
+        onset = next((s for s in ONSETS_S if clear(s)), None)
+        if onset is None:
+            return None
+        onset = _least_enough(clear, onset, _HALVINGS)
+        done = most(onset)
+        return None if self._too_far(self._motions(done, 1.0)) else self._told(acting, done, 1.0, onset)
 
     def _most(self, side: _Side, maneuver: EvasiveManeuver, onset_s: float, left: float) -> Reaction:
         """The strongest reaction of a maneuver that begins `onset_s` before the contact; `left`: the side where it is
@@ -214,7 +248,7 @@ class _Parting:
         self, acting: list[tuple[_Side, EvasiveManeuver]], most: dict[str, Reaction], share: float, onset_s: float
     ) -> NearMiss:
         motions = self._motions(most, share)
-        notes = tuple(_note(side, maneuver, most[side.id], share, onset_s) for side, maneuver in acting)
+        notes = tuple(told_of(s.option.role, how, most[s.id].scaled(share), onset_s) for s, how in acting)
         return NearMiss(self._replaced(motions), notes)
 
     def _replaced(self, motions: tuple[Motion, Motion], shift_s: float = 0.0) -> Encounter:
@@ -252,15 +286,3 @@ def _least_enough(enough: Callable[[float], bool], most: float, halvings: int) -
         middle = (low + high) / 2
         low, high = (low, middle) if enough(middle) else (middle, high)
     return high
-
-
-def _note(side: _Side, maneuver: EvasiveManeuver, most: Reaction, share: float, onset_s: float) -> str:
-    """The evasion of one actor, its strength and its beginning."""
-    grip = side.option.role.grip_mps2
-    done = most.scaled(share)
-    how = [f"{a:.1f} m/s2" for a in (done.braking_mps2(grip), done.accelerating_mps2(grip)) if a > 0.05]
-    how += [f"{abs(done.left_m):.1f} m aside"] if done.left_m else []
-    words = _WORDS[maneuver]
-    if maneuver.endswith("steering"):
-        words = words.replace("steers aside", "steers left" if done.left_m > 0 else "steers right")
-    return f"{side.id} {words} from {onset_s:.1f} s before the conflict on: {', '.join(how)}"

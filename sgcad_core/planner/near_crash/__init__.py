@@ -1,0 +1,1 @@
+"""How two actors nearly touch: the conflict, the evasion, and how far they pass each other."""
