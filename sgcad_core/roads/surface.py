@@ -136,4 +136,5 @@ def _corners(lane: Lane, at: int, before: int) -> Floats:
     """(2, 2) both corners of a lane at one of its ends."""
     east, north = lane.shape[at] - lane.shape[before]
     across = np.array([-north, east]) * lane.width_m / 2 / max(np.hypot(east, north), 1e-9)
-    return lane.shape[at] + np.array([across, -across])
+    corners: Floats = lane.shape[at] + np.array([across, -across])
+    return corners
