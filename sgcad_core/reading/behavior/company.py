@@ -94,7 +94,7 @@ def _told(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:
 
 
 def _queue(sentence: Sentence) -> Iterator[_Told]:
-    match = rule("account.crowd").search(sentence.text)
+    match = rule("account.crowd").search(sentence.text) or rule("company.queue_ahead").search(sentence.text)
     if match and not rule("company.queue_elsewhere").search(sentence.text):
         yield from [_Told("car", None, _named_before(sentence.text, match.start()))] * _QUEUED
 
