@@ -27,8 +27,8 @@ IN_STALL_M = -1.0
 """Station of the middle of a box whose rear axle stands where the way out of its stall begins."""
 BRAKED_TO = 0.72
 """Share of the speed that is left at the contact after braking: there is seldom time for more."""
-PUSHED_M = 0.8
-"""Distance that a standing actor rolls when it is pushed into another one."""
+PUSHED_M, BACKS_M = 0.8, 5.0
+"""Distance that a standing actor rolls when it is pushed into another one; that which one backs along its lane."""
 _QUEUE_M = 2.0
 """Between two that start from rest one behind the other."""
 _AGAINST, _ONE_WAY_RAD = 0.8, 0.6
@@ -271,13 +271,13 @@ def facing(side: Area) -> float:
 
 def starts_at_m(role: Role, pacing: Pacing) -> float | None:
     """The station up to which it stands; None without a standing start."""
-    if role.pushed:
-        return role.place.station_m - PUSHED_M
-    return start_m(role) if pacing.from_stop else None
+    return role.place.station_m - PUSHED_M if role.pushed else start_m(role) if pacing.from_stop else None
 
 
 def start_m(role: Role) -> float:
     """The station at which an actor that starts from rest stands: at its line, or behind the one that it runs into."""
+    if role.actor.maneuver == "backing" and not role.course.stalls:
+        return role.place.station_m - BACKS_M
     queued_m = (role.size[0] + _QUEUE_M + role.other_moves_up_m) * _waits_behind(role)
     if role.course.turn is not None:
         return stop_m(role.course.turn.entry_m - role.course.queued_m, role.size[0]) - queued_m
