@@ -27,14 +27,14 @@ IN_STALL_M = -1.0
 """Station of the middle of a box whose rear axle stands where the way out of its stall begins."""
 BRAKED_TO = 0.72
 """Share of the speed that is left at the contact after braking: there is seldom time for more."""
-PUSHED_M = 0.8
-"""Distance that a standing actor rolls when it is pushed into another one."""
+PUSHED_M, BACKS_M = 0.8, 5.0
+"""Distance that a standing actor rolls when it is pushed into another one; that which one backs along its lane."""
 _QUEUE_M = 2.0
 """Between two that start from rest one behind the other."""
 _AGAINST, _ONE_WAY_RAD = 0.8, 0.6
 """Cosine of the angle between two that come against each other; angle between two that drive in one direction."""
 _SLIGHT_MPS = 6.5
-"""Of two whose ways cross in a slight blow, at most."""
+"""Of two whose ways cross in a slight blow, and of one that passes from rest, at most."""
 _STEEP_DEG = 60.0
 """Bearing of a vehicle alongside that is to be hit with the front."""
 
@@ -109,8 +109,7 @@ class Role:
 
 
 class Swing(NamedTuple):
-    """A part of a line: to the left by `left_m` over `length_m`, ending at a station, with the box turned by
-    `yaw_rad`."""
+    """A part of a line: to the left by `left_m` over `length_m`, ending at a station, the box turned by `yaw_rad`."""
 
     left_m: float
     length_m: float
@@ -211,8 +210,9 @@ def usual_speed(role: Role) -> float:
         return max(actor.speed_mph * MPS_PER_MPH, 1.0)
     if actor.maneuver == "backing":
         return 2.5
-    crosses = role.told.slight and abs(role.place.angle_rad) > _ONE_WAY_RAD and not is_standing(role)
-    return min(top, _SLIGHT_MPS if crosses else 11.0 if actor.maneuver in TURNING else top)
+    slow = role.told.slight and abs(role.place.angle_rad) > _ONE_WAY_RAD and not is_standing(role)
+    slow = slow or (role.told.from_rest and actor.maneuver == "overtaking")
+    return min(top, _SLIGHT_MPS if slow else 11.0 if actor.maneuver in TURNING else top)
 
 
 def speed_there(role: Role) -> float:
@@ -272,13 +272,13 @@ def facing(side: Area) -> float:
 
 def starts_at_m(role: Role, pacing: Pacing) -> float | None:
     """The station up to which it stands; None without a standing start."""
-    if role.pushed:
-        return role.place.station_m - PUSHED_M
-    return start_m(role) if pacing.from_stop else None
+    return role.place.station_m - PUSHED_M if role.pushed else start_m(role) if pacing.from_stop else None
 
 
 def start_m(role: Role) -> float:
     """The station at which an actor that starts from rest stands: at its line, or behind the one that it runs into."""
+    if role.actor.maneuver == "backing" and not role.course.stalls:
+        return role.place.station_m - BACKS_M
     queued_m = (role.size[0] + _QUEUE_M + role.other_moves_up_m) * _waits_behind(role)
     if role.course.turn is not None:
         return stop_m(role.course.turn.entry_m - role.course.queued_m, role.size[0]) - queued_m
@@ -288,11 +288,12 @@ def start_m(role: Role) -> float:
 def _waits_behind(role: Role) -> bool:
     """Whether it starts from rest behind the one that it runs into."""
     starts = role.told.from_rest and not is_standing(role) and abs(role.place.angle_rad) < _ONE_WAY_RAD
-    return starts and (role.side, role.other_side) == ("front", "back")
+    passes = role.actor.maneuver == "overtaking" and role.other_mps == 0.0
+    return starts and (passes or (role.side, role.other_side) == ("front", "back"))
 
 
 def line_m(role: Role) -> float:
-    """The station of its center at the last stop line before the meeting place; backing out of a stall, in it."""
+    """The station of its center at the last stop line before the meeting place; in its stall when backing out."""
     if role.course.stalls and role.actor.maneuver == "backing":
         return IN_STALL_M
     entries = [p.entry_m for p in role.course.passages if p.entry_m < role.place.station_m]

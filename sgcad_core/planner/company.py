@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.planner.actor_plan import Role
+from sgcad_core.planner.actor_plan import BACKS_M, Role
 from sgcad_core.planner.aftermath.struck_objects import standing_track
 from sgcad_core.planner.encounter.motion_options import options
 from sgcad_core.planner.lines.actor_course import Course
@@ -61,6 +61,8 @@ def led_by(behavior: BehaviorSpec, actor: Actor) -> Actor | None:
 def with_company(behavior: BehaviorSpec, courses: Mapping[str, Course]) -> dict[str, Course]:
     """The courses, with the room that vehicles need which stand ahead in the lane."""
     found = dict(courses)
+    if waits := _behind_one_that_backs(behavior):
+        found[waits[0]] = replace(found[waits[0]], queued_m=found[waits[0]].queued_m + waits[1])
     for actor in behavior.actors:
         leader = None if actor.record.walks or actor.maneuver == "slowing" else led_by(behavior, actor)
         if leader is None:
@@ -69,6 +71,20 @@ def with_company(behavior: BehaviorSpec, courses: Mapping[str, Course]) -> dict[
             queued_m = found[other.id].queued_m or (_ROLLS_ON_M if leader.maneuver == "slowing" else 0.0)
             found[other.id] = replace(found[other.id], queued_m=queued_m + size_m(actor)[0] + GAP_M)
     return found
+
+
+def _behind_one_that_backs(behavior: BehaviorSpec) -> tuple[str, float] | None:
+    """The one that stands behind one that backs into it in its lane, and the room that this one needs ahead of it."""
+    first = behavior.first_meeting
+    pair = [a for a in behavior.actors if first and a.id in (first.striker, first.struck)]
+    backs = next((a for a in pair if a.maneuver == "backing" and a.record.drives), None)
+    stands = next((a for a in pair if a.maneuver == "stopped" and a.record.drives), None)
+    if first is None or backs is None or stands is None:
+        return None
+    areas = {first.striker: first.striker_area, first.struck: first.struck_area}
+    one_lane = (backs.road, backs.direction) == (stands.road, stands.direction)
+    ahead = one_lane and (areas[backs.id], areas[stands.id]) == ("back", "front")
+    return (stands.id, size_m(backs)[0] + BACKS_M) if ahead else None
 
 
 def _lane_of(behavior: BehaviorSpec, leader: Actor) -> list[Actor]:

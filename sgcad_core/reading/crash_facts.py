@@ -147,7 +147,7 @@ _SURFACE: dict[Weather | None, Surface] = {"rain": "wet", "snow": "snow", "sleet
 """Surface where only the weather is told."""
 
 
-_FROM_REST: tuple[Maneuver, ...] = ("straight", "merge", "turn_left", "turn_right", "u_turn")
+_FROM_REST: tuple[Maneuver, ...] = ("straight", "merge", "turn_left", "turn_right", "u_turn", "overtaking")
 """Maneuvers that a vehicle may begin at rest."""
 
 

@@ -59,7 +59,8 @@ def _running_up(this: _One, other: _One) -> _One:
     if not (behind and along and free and role.actor.record.wheeled) or final is None:
         return this
     at = float(motion.stations([own_s])[0])
-    cruise, slow_m = min(role.course.limit_mps, _MOST_MPS), at - _SLOW_S * final
+    cruise = max(role.actor.record.pace_mps or min(role.course.limit_mps, _MOST_MPS), final)
+    slow_m = at - _SLOW_S * final
     pace = Pace(cruise, slow_at_m=slow_m, slow_mps=final, grip_mps2=role.grip_mps2)
     time, station = drive(motion.axle or motion.path, pace, at, (motion.path, role.course.path))
     brakes_m = (cruise**2 - final**2) / (2 * pace.braking_mps2)

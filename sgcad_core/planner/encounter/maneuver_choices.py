@@ -14,7 +14,7 @@ from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.encounter.out_of_lanes import is_out
 from sgcad_core.planner.encounter.pacing_choices import from_another_road
 from sgcad_core.planner.lines.box_angles import SKIDS, STEERS
-from sgcad_core.planner.lines.crossing import LEAVES, crossings, end_meets_flank
+from sgcad_core.planner.lines.crossing import LEAVES, brushing, crossings, end_meets_flank
 from sgcad_core.planner.lines.departures import (
     DEPARTURES,
     GENTLY,
@@ -98,7 +98,7 @@ def _lines(role: Role, *, fine: bool) -> list[Drift]:
             shares = [(0.63, 0.0), (1.37, 0.05), (1.0, 0.1), *shares[1:]]
         shares = shares if fine else [shares[0], shares[3], shares[4]]
         return [*_behind(steep, [*_shifts(role, wanted, shares), *_far_over(role, shares)]), Drift(0.8)]
-    near = [*_to_parked(role), *(_in_lane(role) if fine else [])]
+    near = [*_to_parked(role), *brushing(role), *(_in_lane(role) if fine else [])]
     if evading := _evading(role):
         return [*evading, *(line._replace(cost=line.cost + _NOT_EVADING) for line in (Drift(0.0), *near))]
     return [Drift(0.0), *near, *corner_lines(role), *_other_lanes(role), *_swerves(role)]

@@ -17,12 +17,18 @@ _FROM_REST = ((0.0, 1.0), (0.1, 0.6), (0.15, 0.4))
 """Costs of a start from rest, with the factor on the usual speed that is then reached."""
 
 
+_UNDER_WAY = 0.3
+"""Cost of one that backs all the time: it has stood before."""
+
+
 def pacings(role: Role) -> list[Pacing]:
     """Speeds: the usual one, catching up or falling behind, slower, faster, and from a stop."""
     if role.actor.record.walks:
         return [Pacing(0.0), Pacing(0.1, 1.6), Pacing(0.2, 0.7)]
     if role.course.stalls and role.actor.maneuver == "backing":
         return [Pacing(cost, factor, True) for cost, factor in ((0.0, 1.0), (0.1, 1.5), (0.15, 0.6))]
+    if role.actor.maneuver == "backing" and not role.actor.speed_mph:
+        return [Pacing(0.0, 1.0, True), Pacing(0.1, 1.5, True), Pacing(_UNDER_WAY), Pacing(_UNDER_WAY + 0.1, 0.5)]
     if role.pushed:
         return [Pacing(0.0, 1.0, True)]
     if role.told.from_rest:

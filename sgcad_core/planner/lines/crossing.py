@@ -34,6 +34,12 @@ _ALONG, _BEHIND_STANDING, _INTO_ONCOMING = 0.35, 0.15, 0.6
 stands and was passed, and of one that leads into oncoming traffic: that is odd driving."""
 
 
+_ALONG_SIN, _BRUSHES = 0.35, ((0.25, 0.0), (0.5, 0.05), (0.12, 0.05))
+"""Sine of the angle between two that drive along each other; overlaps at the end of a line that brushes, with costs."""
+_BRUSH_RUN, _BRUSH_LEAST_M = 8.0, 8.0
+"""Length over width of such a line (an angle of 13 degrees), and its least length."""
+
+
 def implied_crossings(role: Role) -> list[Drift]:
     """Untold changes of line that the told lanes imply, where an end is told to meet a flank."""
     aside = role.place.aside_m
@@ -48,6 +54,20 @@ def _cuts_in_behind(role: Role) -> bool:
     """Whether its flank is told to touch the rear of one that stands and that it passes the other way."""
     stands = role.other_mps == 0.0 and comes_against(role)
     return stands and is_beside(role.side) and role.other_side == "back"
+
+
+def brushing(role: Role) -> list[Drift]:
+    """Untold changes of line by which its told flank brushes that of one that stands, as it passes."""
+    stands = role.other_mps == 0.0 and not is_standing(role) and abs(math.sin(role.place.angle_rad)) < _ALONG_SIN
+    if not stands or not (is_beside(role.side) and is_beside(role.other_side)):
+        return []
+    hand, touch = 1.0 if role.side == "left" else -1.0, (role.size[1] + role.other_width_m) / 2
+    found = []
+    for overlap, cost in _BRUSHES:
+        left = role.place.aside_m - hand * (touch - overlap)
+        run = max(_BRUSH_RUN * abs(left), _BRUSH_LEAST_M)
+        found.append(Drift(cost, left, run, role.place.station_m + run / 4, note=IMPLIED))
+    return found
 
 
 def end_meets_flank(role: Role) -> bool:

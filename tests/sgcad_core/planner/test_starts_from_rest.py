@@ -43,6 +43,18 @@ def test_who_is_told_to_start_from_rest_stands_first(maneuver, exit_road, hit) -
     assert made.realised
 
 
+def test_one_that_stood_behind_another_passes_it_from_there() -> None:
+    behavior = BehaviorSpec(
+        actors=(actor("V1", "stopped", "S", "N"), actor("V2", "overtaking", "S", "N")),
+        contacts=(contact("V2 right V1 left"),),
+    )
+    made = plan(behavior, network("four_leg"), courses=_FROM_REST)
+    speed = track(made, "V2").speed_mps[: at_contact(made)]
+    assert made.realised
+    assert (speed[:20] < 0.1).all()
+    assert track(made, "V1").y_m[0] - track(made, "V2").y_m[0] < 16.0
+
+
 def test_a_start_from_rest_is_kept_in_plain_crossings() -> None:
     behavior = BehaviorSpec(
         actors=(actor("V1", "straight", "S"), actor("V2", "straight", "W", "E")),

@@ -37,6 +37,7 @@ def test_every_act_points_to_the_sentence_that_tells_it() -> None:
 @pytest.mark.parametrize(("told", "starts"), [
     ("V2 was stopped at the sign and then entered the intersection.", True),
     ("V2 stopped, waited, and began to turn left.", True),
+    ("V2 was stopped behind a truck and began to pass it.", True),
     ("V2 was stopped at the sign.", False),
     ("V2 entered the intersection.", False),
 ])  # fmt: skip

@@ -72,6 +72,16 @@ def test_a_low_told_speed_is_that_of_the_contact() -> None:
     assert speed[-1] == pytest.approx(5 * 0.447, abs=0.5)
 
 
+def test_a_cyclist_comes_no_faster_than_cyclists_do() -> None:
+    behavior = BehaviorSpec(
+        actors=(actor("V1", "stopped", "S", "N"), actor("B1", "straight", "S", "N", kind="bicycle")),
+        contacts=(contact("B1 front V1 back"),),
+    )
+    made = plan(behavior, network("four_leg"), courses=dict.fromkeys(("V1", "B1"), CourseTold(slight=True)))
+    assert made.realised
+    assert track(made, "B1").speed_mps[: at_contact(made)].max() < 7.0
+
+
 def test_ways_that_cross_in_a_slight_blow_are_driven_slowly() -> None:
     behavior = BehaviorSpec(
         actors=(actor("V1", "straight", "S", "N"), actor("V2", "straight", "W", "E")),

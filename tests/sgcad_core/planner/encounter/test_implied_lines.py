@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -17,6 +19,7 @@ from sgcad_core.records.specs import Actor, BehaviorSpec, Beside, Contact, RoadL
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.layout import road_spec
 from tests.sgcad_core.planner.crash_scenes import compile_network, leg, network, plain_xml
+from tests.sgcad_core.planner.test_plan_rules import actor, at_contact, contact, track
 
 LANE_M = 3.6
 
@@ -95,3 +98,17 @@ def test_the_side_of_a_departure_is_that_of_the_maneuver_where_no_side_is_told(
     maneuver: str, told: str | None, side: str | None
 ) -> None:
     assert side_of(maneuver, told) == side  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("way", "hit"), [("N", "V2 left V1 left"), ("S", "V2 right V1 left")])
+def test_a_flank_that_passes_one_that_stands_brushes_it_along_its_flank(way: str, hit: str) -> None:
+    behavior = BehaviorSpec(
+        actors=(actor("V1", "stopped", "S", "N"), actor("V2", "straight", way, {"N": "S", "S": "N"}[way])),
+        contacts=(contact(hit),),
+    )
+    made = plan(behavior, network("four_leg"))
+    one, two = (track(made, who).heading_rad[at_contact(made)] for who in ("V1", "V2"))
+    assert made.realised
+    assert abs(math.remainder(float(one) - math.pi / 2, math.pi)) < 0.01
+    assert abs(math.remainder(float(two) - float(one), math.pi)) < math.radians(16)
+    assert not [note for note in made.notes if "askew" in note or "swerves" in note]

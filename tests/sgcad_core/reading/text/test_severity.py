@@ -14,6 +14,7 @@ _STRUCK = "The van was stopped at a red light. A taxi struck the rear of the van
     ("The van sustained minor damage to its bumper.", True),
     ("There was minor damage and no injuries were reported.", True),
     ("There were no injuries, and neither vehicle was towed.", True),
+    ("The rear bumper sustained damage.", True),
     ("The taxi had minor damage and its driver was injured.", False),
     ("The taxi had minor damage. The van was towed away.", False),
     ("Both vehicles remained drivable without needing a tow truck.", True),
