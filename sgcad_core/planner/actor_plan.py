@@ -297,5 +297,4 @@ def line_m(role: Role) -> float:
     if role.course.stalls and role.actor.maneuver == "backing":
         return IN_STALL_M
     entries = [p.entry_m for p in role.course.passages if p.entry_m < role.place.station_m]
-    at = entries[-1] - role.course.queued_m if entries else role.place.station_m - 6.0
-    return stop_m(at, role.size[0])
+    return stop_m(entries[-1] - role.course.queued_m if entries else role.place.station_m - 6.0, role.size[0])

@@ -17,7 +17,7 @@ from sgcad_core.planner.actor_plan import Drift, Role
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.lines.path import ramp_length_m
 from sgcad_core.planner.motion import STEP_S, Motion
-from sgcad_core.records.specs import EvasiveManeuver
+from sgcad_core.records.specs import EvasiveManeuver, Maneuver
 
 MOST_STEER_M = 4.2
 """Sideways at most: a lane and a little."""
@@ -43,6 +43,9 @@ _WORDS: dict[EvasiveManeuver, str] = {
     "braking_and_steering_left": "brakes and steers left", "braking_and_steering_right": "brakes and steers right",
     "accelerating": "accelerates",
 }  # fmt: skip
+
+
+CROSSES: Maneuver = "crossing_centerline"
 
 
 class Reaction(NamedTuple):
@@ -139,11 +142,14 @@ def _integrated(motion: Motion, reaction: Reaction, gain_mps2: float, start_m: f
     return np.array(found)
 
 
-def returns_m(role: Role, maneuver: EvasiveManeuver) -> float:
-    """How far to the left an evasion leads back into the lane from which it began to change; 0 for others."""
-    change = CHANGES.get(role.actor.maneuver, 0)
-    back = bool(change) and maneuver.endswith("steering_right" if change > 0 else "steering_left")
-    return -change * role.course.lane_width_m if back else 0.0
+def returns_m(option: Option, maneuver: EvasiveManeuver) -> float:
+    """How far to the left an evasion leads back into the lane from which it began to change, or over the middle of the
+    road; 0 for others."""
+    role = option.role
+    change = 1 if role.actor.maneuver == CROSSES else CHANGES.get(role.actor.maneuver, 0)
+    if not change or not maneuver.endswith("steering_right" if change > 0 else "steering_left"):
+        return 0.0
+    return -option.drift.left_m if role.actor.maneuver == CROSSES else -change * role.course.lane_width_m
 
 
 def told_of(role: Role, maneuver: EvasiveManeuver, done: Reaction, onset_s: float) -> str:

@@ -20,7 +20,15 @@ from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, clock
-from sgcad_core.planner.near_crash.evasion import MOST_STEER_M, SLIGHT_STEER_M, Reaction, reacted, returns_m, told_of
+from sgcad_core.planner.near_crash.evasion import (
+    CROSSES,
+    MOST_STEER_M,
+    SLIGHT_STEER_M,
+    Reaction,
+    reacted,
+    returns_m,
+    told_of,
+)
 from sgcad_core.planner.near_crash.near_thing import is_beside_lanes, near_thing
 from sgcad_core.records.specs import Evasion, EvasiveManeuver, NearCrash
 
@@ -132,11 +140,14 @@ class _Parting:
         """As stated; else by other means, with a note."""
         told = [e for e in near.evasions if e.maneuver != "none"]
         follows = near.conflict.striker_area == "front" and near.conflict.struck_area == "back"
-        back = any(side.id == e.actor and returns_m(side.option.role, e.maneuver) for side in self.sides for e in told)
+        back = any(side.id == e.actor and returns_m(side.option, e.maneuver) for side in self.sides for e in told)
         parted = ((None if back else self._evaded(told, told=False)) or self._evaded(told)) if told else None
         as_told = parted if told else None if follows else self._shifted()
         if as_told is not None:
             return as_told
+        for side in () if told else self.sides:
+            if side.option.role.actor.maneuver == CROSSES and (made := self._returned([(side, "steering_right")])):
+                return made._replace(notes=(f"{side.id} steers back, though nobody says so", *made.notes))
         for evasion in self._instead(near):
             if parted := self._evaded([evasion], told=False):
                 words = "evades otherwise than told" if told else "evades, though nobody says so"
@@ -174,12 +185,12 @@ class _Parting:
 
     def _returned(self, acting: list[tuple[_Side, EvasiveManeuver]]) -> NearMiss | None:
         """Back into the lane from which one began to change, the latest so that the declared clearance is left."""
-        if not any(returns_m(side.option.role, how) for side, how in acting):
+        if not any(returns_m(side.option, how) for side, how in acting):
             return None
 
         def most(onset_s: float) -> dict[str, Reaction]:
             found = {side.id: self._most(side, how, onset_s, 1.0) for side, how in acting}
-            back = {side.id: by for side, how in acting if (by := returns_m(side.option.role, how))}
+            back = {side.id: by for side, how in acting if (by := returns_m(side.option, how))}
             return {who: r._replace(left_m=back[who], stays=True) if who in back else r for who, r in found.items()}
 
         def clear(onset_s: float) -> bool:

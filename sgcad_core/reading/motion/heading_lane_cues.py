@@ -132,6 +132,8 @@ def read_relations(motion: VehicleMotion, text: str, weight: int, vehicle: str, 
             named = rule("surroundings.named").match(text[m.end() :])
             stranger = rule("surroundings.stranger").match(text[m.end() :])
             other = named.group(1).upper() if named else None
+            if other in roster.bystanders:
+                continue
             if other not in roster.ids or other == vehicle:
                 other = None
             if relation != "same" or not word or other or not stranger:

@@ -172,3 +172,14 @@ def test_who_steers_back_from_a_lane_change_ends_in_its_first_lane(maneuver, lan
     assert closest == pytest.approx(CLEARANCE_M, abs=0.05)
     assert 0.5 < (sign * left_m).max() < 3.0
     assert abs(left_m[-1]) < 0.3
+
+
+def test_who_crosses_the_middle_before_an_oncoming_one_comes_back_where_no_evasion_is_told():
+    pair = actor("V1", "crossing_centerline", "S"), actor("V2", "straight", "N")
+    made, closest = planned("straight", near("V1 front V2 front"), *pair)
+    mine = track(made, "V1")
+    assert closest == pytest.approx(CLEARANCE_M, abs=0.05)
+    assert "V1 steers back, though nobody says so" in made.notes
+    assert (mine.x_m[0] - mine.x_m).max() > 1.5
+    assert abs(mine.x_m[-1] - mine.x_m[0]) < 0.5
+    assert mine.speed_mps[-1] > 8.0

@@ -118,3 +118,13 @@ def test_a_loss_of_control_is_told_of_a_near_crash_too():
     text = "Subject loses control. Subject spins 180 degrees clockwise and nearly hits the guardrail on the right."
     course = read(redact(text)).crash.driven["V1"]
     assert (course.lost_control, course.spin, course.spin_deg, course.departs) == (True, "clockwise", 180.0, "right")
+
+
+def test_how_one_drives_beside_a_bystander_tells_nothing_of_the_one_that_is_nearly_struck():
+    text = (
+        "Subject is behind a slow truck. "
+        "Subject is passing the truck when a van approaches from the opposite direction. "
+        "Subject nearly hits the van head-on."
+    )
+    crash = read(redact(text)).crash
+    assert [(v.id, v.heading) for v in crash.vehicles] == [("V1", "N"), ("V2", "S")]
