@@ -15,6 +15,8 @@ _STRUCK = "The van was stopped at a red light. A taxi struck the rear of the van
     ("There was minor damage and no injuries were reported.", True),
     ("There were no injuries, and neither vehicle was towed.", True),
     ("The rear bumper sustained damage.", True),
+    ("It was a light contact.", True),
+    ("The taxi ran the red light. Contact was made.", False),
     ("The taxi had minor damage and its driver was injured.", False),
     ("The taxi had minor damage. The van was towed away.", False),
     ("Both vehicles remained drivable without needing a tow truck.", True),
