@@ -11,7 +11,6 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
 from sgcad_core.geometry.plane import arc_lengths, resample
 from sgcad_core.roads.lane_graph import Floats, Lane, LaneGraph, road_of
@@ -118,6 +117,8 @@ def _cut(line: Floats) -> tuple[Floats, Floats]:
 
 
 def _junctions(graph: LaneGraph) -> Iterator[Junction]:
+    from scipy.spatial import ConvexHull  # heavy: a check of a config does without it
+
     ends: dict[str, list[Floats]] = {}
     roads: dict[str, set[str]] = {}
     for edge in graph.edges.values():
