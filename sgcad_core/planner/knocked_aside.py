@@ -135,7 +135,7 @@ def _thrown(scene: Scene, strike: Strike, place: _Place) -> Track:
     poses = np.empty((scene.count, 3))
     poses[: k + 1] = _beside(driven[k], place.ahead_m, place.left_m, turn)
     poses[:k] += _walked(strike, poses[k], k)
-    if strike.thing.firm or strike.thing.flat:
+    if strike.thing.stays:
         poses[k:] = poses[k]
     else:
         slows = TUMBLING_MPS2 if strike.thing.record.exposed or strike.thing.record.walks else FALLEN_MPS2

@@ -287,9 +287,8 @@ class _Cast:
         leaves = departs(role.actor.maneuver, told.departs)
         if self.behavior.near_crash or not (leaves or told.lost_control):
             return role
-        role = replace(role, untouched=not leaves)
         at = departure_station(role.course, role.actor.maneuver, role.place.station_m, beyond=told.beyond)
-        return with_room(replace(role, told=told, place=role.place._replace(station_m=at)))
+        return with_room(replace(role, told=told, untouched=not leaves, place=role.place._replace(station_m=at)))
 
     def role(self, name: str) -> Role:
         """An actor at its usual place, for an encounter with another one."""

@@ -207,6 +207,11 @@ class Actor(Spec):
         """What is known of its kind."""
         return actor_kind(self.kind)
 
+    @property
+    def stays(self) -> bool:
+        """Whether it stays where it stands when a vehicle strikes it and goes on."""
+        return self.firm or self.flat
+
 
 class Contact(Spec):
     """One collision: striker hits struck; areas are the sides of each that touch."""

@@ -26,6 +26,7 @@ BRAKES_MPS2, BRAKES_MPS = 2.0, 1.2
 """Least deceleration over half a second, and least loss of speed, of visible braking."""
 STEERS_M, STEERS_RAD = 0.25, math.radians(3.0)
 """Least lateral offset, or heading against the lane, of visible steering."""
+_LEFTWARD = ("lane_change_left", "crossing_centerline", "overtaking", "departing_road_left")
 _SPIN_S = 2.5
 
 
@@ -95,9 +96,6 @@ def _maneuver(label: VehicleLabel, one: VehicleMotion) -> bool | None:
     if kind == "merge":  # its lane may itself lead into the other road
         return max(abs(aside), abs(float(one.off_line[-1] - one.off_line[0]))) > ASIDE_M
     return None
-
-
-_LEFTWARD = ("lane_change_left", "crossing_centerline", "overtaking", "departing_road_left")
 
 
 def _aside(one: VehicleMotion, way: float) -> float:

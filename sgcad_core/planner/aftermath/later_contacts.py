@@ -179,7 +179,7 @@ class Ending:
         """Places a thing on the way of its vehicle, or on another one that it can take; a note where it is missed. What
         stays where it stands is beside the road, unless the vehicle is told to rest on the road. `ends`: the cost of
         the rest as settled, and the number of contacts that follow."""
-        beside = (strike.thing.firm or strike.thing.flat) and told.rest.where not in ("road", "intersection")
+        beside = strike.thing.stays and told.rest.where not in ("road", "intersection")
         placed = beside and self._is_met(strike, surface, ends, on_road=False)
         if not placed and not self._is_met(strike, surface, ends, on_road=True):
             leave_beside(self.scene, strike)

@@ -150,7 +150,7 @@ def standing_track(scene: Scene, thing: Actor, pose: Floats, *, fixed: bool = Fa
 
 
 def _stand(scene: Scene, strike: Strike, pose: Floats) -> Track:
-    stays = strike.thing.firm or strike.thing.flat or not strike.goes_on
+    stays = strike.thing.stays or not strike.goes_on
     track = standing_track(scene, strike.thing, pose, fixed=stays)
     scene.tracks[strike.thing.id] = track
     track.firm, track.flat = strike.glances, strike.thing.flat

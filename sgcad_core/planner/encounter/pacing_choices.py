@@ -15,8 +15,6 @@ _ROLLS = 0.6
 """Cost of rolling into the encounter where a start from rest is stated."""
 _FROM_REST = ((0.0, 1.0), (0.1, 0.6), (0.15, 0.4))
 """Costs of a start from rest, with the factor on the usual speed that is then reached."""
-
-
 _UNDER_WAY = 0.3
 """Cost of one that backs all the time: it has stood before."""
 

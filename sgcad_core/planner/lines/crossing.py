@@ -32,8 +32,6 @@ _PAST_M = ((0.1, 0.05), (0.5, 0.05), (1.0, 0.1), (1.6, 0.15))
 _ALONG, _BEHIND_STANDING, _INTO_ONCOMING = 0.35, 0.15, 0.6
 """Costs of a change of line that nobody tells and that the told lanes and sides imply, of one back behind somebody who
 stands and was passed, and of one that leads into oncoming traffic: that is odd driving."""
-
-
 _ALONG_SIN, _BRUSHES = 0.35, ((0.25, 0.0), (0.5, 0.05), (0.12, 0.05))
 """Sine of the angle between two that drive along each other; overlaps at the end of a line that brushes, with costs."""
 _BRUSH_RUN, _BRUSH_LEAST_M = 8.0, 8.0

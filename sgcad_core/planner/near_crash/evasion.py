@@ -35,8 +35,6 @@ _OVER_CRUISE = 1.35
 _LASTS_S = 14.0
 _PASSES_S = 2.0
 """Time beside the other one before the way back into the lane."""
-
-
 _WORDS: dict[EvasiveManeuver, str] = {
     "none": "does not evade", "braking": "brakes", "steering": "steers aside", "steering_left": "steers left",
     "steering_right": "steers right", "braking_and_steering": "brakes and steers aside",

@@ -26,9 +26,8 @@ _SIZE_M: dict[str, tuple[float, float]] = {
     "abutment": (1.0, 3.0), "ditch": (2.0, 12.0), "culvert": (1.0, 1.2), "berm": (1.5, 10.0), "hedge": (1.0, 6.0),
     "median": (1.0, 14.0), "curb": (0.3, 12.0), "divider": (0.6, 14.0), "island": (1.5, 8.0),
     "cable": (0.3, 14.0), "shrub": (1.0, 1.0), "trunk": (0.6, 0.6), "stump": (0.5, 0.5), "column": (0.8, 0.8),
-    "curbing": (0.3, 12.0), "hole": (0.8, 0.8),
-    "pothole": (0.6, 0.6), "swale": (2.0, 12.0), "pillar": (0.8, 0.8), "bollard": (0.2, 0.2),
-    "garage": (5.0, 5.0), "shed": (3.0, 3.0),
+    "curbing": (0.3, 12.0), "hole": (0.8, 0.8), "pothole": (0.6, 0.6), "swale": (2.0, 12.0), "pillar": (0.8, 0.8),
+    "bollard": (0.2, 0.2), "garage": (5.0, 5.0), "shed": (3.0, 3.0),
 }  # fmt: skip
 """Depth and width of things as a car meets them, metres; others are posts."""
 _FIRM = frozenset((

@@ -7,7 +7,7 @@ reading, no roads and no motion. What is told elsewhere than ahead is not added.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from sgcad_core.kinds import actor_kind
@@ -20,7 +20,7 @@ from sgcad_core.reading.text.normalise import Sentence
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 from sgcad_core.records.specs import Actor, ActorKind, BehaviorSpec, Maneuver
 
-_QUEUED, _MOST = 2, 12
+_QUEUED, MOST = 2, 12
 """Vehicles that are drawn of a queue, and actors of a behavior in all."""
 _PAIR = 2
 """With more vehicles than those of a contact a queue is one of the numbered ones."""
@@ -50,10 +50,10 @@ def with_company(behavior: BehaviorSpec, reading: Reading) -> BehaviorSpec:
     pair = [a for name in (first.struck, first.striker) for a in actors if a.id == name]
     lanes = {(a.road, a.direction, a.lane) for a in pair}
     row = [*pair, *(a for a in actors if a not in pair and (a.road, a.direction, a.lane) in lanes)]
-    taken = {a.id for a in actors} | {name for s in reading.sentences for name in reading.named_in(s)}
+    taken = taken_names(actors, reading)
     for told in _told(behavior, reading):
         leader = _leader(told, row)
-        if leader is None or len(actors) >= _MOST or told.name in {a.id for a in actors}:
+        if leader is None or len(actors) >= MOST or told.name in {a.id for a in actors}:
             continue
         name = told.name or free_name(taken, told.letter)
         taken.add(name)
@@ -81,8 +81,8 @@ def _leader(told: _Told, row: list[Actor]) -> Actor | None:
 
 def _told(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:
     """All of them in the sentences up to the first contact; a queue where no further vehicle is numbered."""
-    hits = [f.start for f in reading.facts if f.field.startswith("contacts.0") and f.start is not None]
-    last = max([*hits, *(s.start for s in reading.sentences if s.role == "impact")], default=len(reading.narrative))
+    impacts = (s.start for s in reading.sentences if s.role == "impact")
+    last = max([*contact_starts(reading), *impacts], default=len(reading.narrative))
     alone = sum(a.record.drives for a in behavior.actors) <= _PAIR
     walkers = any(a.record.exposed for a in behavior.actors)
     story = [s for s in reading.sentences if s.role in (*STORY_ROLES, "road") and s.start <= last]
@@ -96,7 +96,7 @@ def _told(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:
 def _queue(sentence: Sentence) -> Iterator[_Told]:
     match = rule("account.crowd").search(sentence.text) or rule("company.queue_ahead").search(sentence.text)
     if match and not rule("company.queue_elsewhere").search(sentence.text):
-        yield from [_Told("car", None, _named_before(sentence.text, match.start()))] * _QUEUED
+        yield from [_Told("car", None, named_before(sentence.text, match.start()))] * _QUEUED
 
 
 def _vehicles(sentence: Sentence, reading: Reading) -> Iterator[_Told]:
@@ -106,12 +106,12 @@ def _vehicles(sentence: Sentence, reading: Reading) -> Iterator[_Told]:
         in_front = "in front of" in where or "ahead of" in where
         if in_front or not elsewhere.search(f"{match['words']} {where}"):
             yield _Told(
-                vehicle_kind(match["words"]), reading.actor(match["id"]), _named_before(sentence.text, match.start())
+                vehicle_kind(match["words"]), reading.actor(match["id"]), named_before(sentence.text, match.start())
             )
     for match in rule("company.waits_for_another").finditer(sentence.text):
         here = "same" in (match["where"] or "")
         if here or not elsewhere.search(match[0].replace(" behind ", " ", 1)):
-            yield _Told(vehicle_kind(match["kind"]), None, _named_before(sentence.text, match.start()))
+            yield _Told(vehicle_kind(match["kind"]), None, named_before(sentence.text, match.start()))
 
 
 def _leads(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:
@@ -132,7 +132,7 @@ def _people(sentence: Sentence) -> Iterator[_Told]:
     match = rule("account.waited_for").search(sentence.text)
     if match and match["who"].lower() == "pedestrian":
         letter, kind = kind_of_word("pedestrian")
-        yield _Told(kind, None, _named_before(sentence.text, match.start()), letter=letter)
+        yield _Told(kind, None, named_before(sentence.text, match.start()), letter=letter)
 
 
 def _avoided(sentence: Sentence) -> Iterator[_Told]:
@@ -141,18 +141,23 @@ def _avoided(sentence: Sentence) -> Iterator[_Told]:
         word = (match["who"] or match["comes"]).lower()
         letter, kind = kind_of_word(word)
         if actor_kind(kind).walks:
-            who = _named_before(sentence.text, match.start())
+            who = named_before(sentence.text, match.start())
             yield _Told(kind, None, who, avoided=True, letter=letter)
 
 
 def _avoided_vehicles(sentence: Sentence) -> Iterator[_Told]:
     for match in rule("company.avoided_vehicle").finditer(sentence.text):
         if not rule("company.elsewhere").search(f"{match['words']} {match['where'] or ''}"):
-            who = _named_before(sentence.text, match.start())
+            who = named_before(sentence.text, match.start())
             yield _Told(vehicle_kind(match["kind"]), None, who, avoided=True)
 
 
-def _named_before(text: str, end: int) -> str | None:
+def contact_starts(reading: Reading) -> list[int]:
+    """Where the sentences begin that tell of the first contact."""
+    return [f.start for f in reading.facts if f.field.startswith("contacts.0") and f.start is not None]
+
+
+def named_before(text: str, end: int) -> str | None:
     """The vehicle that is named last before a place in a sentence."""
     return next(reversed(MENTION.findall(text[:end])), None)
 
@@ -161,6 +166,11 @@ def vehicle_kind(words: str) -> ActorKind:
     """The kind of a vehicle from its words; a car where these name none."""
     kind = kind_of(words, None)[0]
     return kind if actor_kind(kind).drives else "car"
+
+
+def taken_names(actors: Iterable[Actor], reading: Reading) -> set[str]:
+    """The ids of the actors and of all that the report numbers."""
+    return {a.id for a in actors} | {name for s in reading.sentences for name in reading.named_in(s)}
 
 
 def free_name(taken: set[str], letter: str) -> str:

@@ -11,8 +11,14 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from sgcad_core.reading.actors.vehicles import MENTION
-from sgcad_core.reading.behavior.company import free_name, vehicle_kind
+from sgcad_core.reading.behavior.company import (
+    MOST,
+    contact_starts,
+    free_name,
+    named_before,
+    taken_names,
+    vehicle_kind,
+)
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.layout.road_ways import Way, apart, exits, turn_of, ways_of
 from sgcad_core.reading.reading import Reading
@@ -20,8 +26,6 @@ from sgcad_core.reading.text.compass import angle_of, compass_of
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 from sgcad_core.records.specs import Actor, BehaviorSpec, RoadSpec
 
-_MOST = 12
-"""Actors of a behavior in all."""
 _ASIDE_RAD = math.radians(50)
 """From the told heading to that of its way, at most; the same from one way straight on to the next."""
 _TURNS = {**dict.fromkeys(("oncoming", "opposing", "opposite"), math.pi),
@@ -41,7 +45,7 @@ class _Told(NamedTuple):
 def with_passers_by(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec) -> BehaviorSpec:
     """The behavior with the first vehicle that one of its contact yields to and that has none itself."""
     first = behavior.first_meeting
-    if first is None or len(behavior.actors) >= _MOST:
+    if first is None or len(behavior.actors) >= MOST:
         return behavior
     ways = ways_of(spec)
     pair = [a for name in (first.struck, first.striker) for a in behavior.actors if a.id == name and a.record.drives]
@@ -52,11 +56,11 @@ def with_passers_by(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec) ->
         way = _way(told.way, own, ways) if own else None
         if way is None or told.name in known or (way.road.id, way.direction) in {(a.road, a.direction) for a in pair}:
             continue
-        named = known | {name for s in reading.sentences for name in reading.named_in(s)}
         onward = min(exits(way, ways), key=lambda w: abs(turn_of(way, w)), default=None)
         straight = onward is not None and abs(turn_of(way, onward)) < _ASIDE_RAD
+        name = told.name or free_name(taken_names(behavior.actors, reading), "V")
         joined = Actor(
-            id=told.name or free_name(named, "V"), kind=vehicle_kind(told.kind), road=way.road.id,
+            id=name, kind=vehicle_kind(told.kind), road=way.road.id,
             direction=way.direction, exit_road=onward.road.id if onward and straight else None, maneuver="straight",
         )  # fmt: skip
         return behavior.model_copy(update={"actors": (*behavior.actors, joined)})
@@ -65,15 +69,13 @@ def with_passers_by(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec) ->
 
 def _told(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:
     """All of them in the sentences up to the first contact."""
-    last = max((f.start for f in reading.facts if f.field.startswith("contacts.0") and f.start is not None),
-               default=len(reading.narrative))  # fmt: skip
+    last = max(contact_starts(reading), default=len(reading.narrative))
     for sentence in reading.sentences:
         if sentence.role not in (*STORY_ROLES, "road") or sentence.start > last:
             continue
         for match in rule("company.yields_to").finditer(sentence.text):
             if way := _way_word(match):
-                before = MENTION.findall(sentence.text[: match.start()])
-                yield _Told(match["words"], match["id"], next(reversed(before), None), way)
+                yield _Told(match["words"], match["id"], named_before(sentence.text, match.start()), way)
 
 
 def _way_word(match: re.Match[str]) -> str | None:

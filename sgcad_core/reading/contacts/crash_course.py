@@ -131,9 +131,9 @@ def _read(one: _CourseReader, segment: Segment, impact: int, event: str, *, late
         before, behind = segment.text[:at], segment.text
     early = segment.number <= impact and not (late and segment.number == impact)
     _read_evasion(one, segment, before, early=early)
-    if segment.role not in RETOLD and early and (m := rule("course_evasion.in_junction").search(before)):
-        one.add("inside", True, Source(segment.number, m[0], "course_evasion.in_junction"))
     if segment.role not in RETOLD and early:
+        if m := rule("course_evasion.in_junction").search(before):
+            one.add("inside", True, Source(segment.number, m[0], "course_evasion.in_junction"))
         _read_departure(one, segment, before)
         _read_roll(one, segment, before, early=True)
     if behind:

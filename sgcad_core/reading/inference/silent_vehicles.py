@@ -11,6 +11,9 @@ from sgcad_core.reading.motion.maneuvers import DEPARTURES
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.records.specs import Maneuver
 
+_GOES_ON = ("near_deeds.goes_on", "deeds.moved_on", "deeds.came_on")
+"""Rules of words that tell that one drives, not where to."""
+
 
 def beside_road(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:
     """Parks a vehicle of which nothing is told but that one that had left the road met it, after a thing or first."""
@@ -24,10 +27,6 @@ def beside_road(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMe
             if silent and inferred.maneuvers[came] in DEPARTURES:
                 inferred.maneuvers[met] = "parked"
                 inferred.sources[f"{met} maneuver"] = Source(b.number, b.words, "infer.beside_road")
-
-
-_GOES_ON = ("near_deeds.goes_on", "deeds.moved_on", "deeds.came_on")
-"""Rules of words that tell that one drives, not where to."""
 
 
 def from_turn_lane(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> None:

@@ -44,7 +44,7 @@ def across_drive(street: RoadFact, streets: list[RoadFact], heading: Compass | N
     return replace(other, lanes=told) if other.lanes == LaneFacts() and (told.total or 0) > 2 else other
 
 
-def stem_of(facts: RoadFacts, flow: Compass) -> Compass:
+def stem_drawn(facts: RoadFacts, flow: Compass) -> Compass:
     """The bearing of a side road as told, else where the turn lane leads of one that drives with the flow, else as
     inferred, or right of it."""
     stem = facts.junction.stem

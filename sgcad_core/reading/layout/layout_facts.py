@@ -13,7 +13,7 @@ from typing import Literal
 from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, RAMP, T
 from sgcad_core.reading.junctions.junction import JunctionFacts
 from sgcad_core.reading.layout.answered_layout import answered_layout
-from sgcad_core.reading.layout.joining_roads import across_drive, drive_heading, ramp_alone, stem_of
+from sgcad_core.reading.layout.joining_roads import across_drive, drive_heading, ramp_alone, stem_drawn
 from sgcad_core.reading.layout.lanes_used import lanes_added, least_lanes, with_told_lanes
 from sgcad_core.reading.layout.layout_places import (
     circle_lanes,
@@ -209,7 +209,7 @@ class _Builder:
 
     def _stem(self, main: RoadFact) -> Compass:
         """The side leg's bearing, never on the main road unless the story's cross road lies there."""
-        comes, stem = drive_heading(self.facts), stem_of(self.facts, self._main_flow(main))
+        comes, stem = drive_heading(self.facts), stem_drawn(self.facts, self._main_flow(main))
         if comes and axis_of(stem) == main.axis != axis_of(comes):
             return turned(comes, 180)
         if axis_of(stem) == main.axis and self.facts.junction.kind != T:
