@@ -45,12 +45,17 @@ def bait(tmp_path, monkeypatch):
             server.accept()
     assert secret.read_text() == "the-secret"
     assert not canary.exists()
-    assert not running(mark)
+    assert not left_running(mark)
 
 
 def running(mark):
     """Processes with a word in their command lines, this one's children or not."""
     return [p for p in psutil.process_iter(["cmdline"]) if mark in " ".join(p.info["cmdline"] or ())]
+
+
+def left_running(mark):
+    """Processes with the word that do not end: on a busy machine the end of a killed one takes its time."""
+    return psutil.wait_procs(running(mark), timeout=10.0)[1]
 
 
 def test_a_script_that_runs_is_seen_by_its_mark(tmp_path, monkeypatch):
@@ -62,7 +67,7 @@ def test_a_script_that_runs_is_seen_by_its_mark(tmp_path, monkeypatch):
         while not running(f"# of {tmp_path}"):
             assert not waiting.done(), "it ended unseen"
             time.sleep(0.01)
-    assert not running(f"# of {tmp_path}")
+    assert not left_running(f"# of {tmp_path}")
 
 
 def test_there_are_a_hundred_attempts():
