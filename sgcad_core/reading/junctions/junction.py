@@ -143,8 +143,6 @@ def _kind(
         return RAMP, True
     if any(_DRIVE_NAMED.search(t.text) for t in story) and not crossing(vehicles):
         return DRIVEWAY, True
-    if any(_SIDE_STREET.search(t.text) for t in story) and not crossing(vehicles):
-        return T, False
     if crossing(vehicles) or _turning(vehicles):
         return (T, False) if _one_sided(story, roads) or not crossing(vehicles) else (FOUR_LEG, False)
     return "none", False
@@ -205,8 +203,6 @@ def _merging(story: Sequence[Statement], roads: Sequence[MergedRoad]) -> bool:
 
 
 _RAMP_JOINS, _DRIVE_NAMED = rule("junction.ramp_joins"), rule("junction.drive_named")
-_SIDE_STREET = rule("junction.side_street")
-"""A turn that is made, meant or waited for, into a road that needs a junction."""
 
 
 def _one_sided(story: Sequence[Statement], roads: Sequence[MergedRoad]) -> bool:
@@ -219,6 +215,6 @@ def _one_sided(story: Sequence[Statement], roads: Sequence[MergedRoad]) -> bool:
 
 
 def _turning(vehicles: Sequence[VehicleFacts]) -> bool:
-    """Whether a vehicle turns, or drives in a lane that is for turns: such a lane ends at a junction."""
+    """Whether a vehicle turns or means to, or drives in a lane that is for turns: such a lane ends at a junction."""
     turns = ("turn_left", "turn_right")
-    return any(v.maneuver in turns or v.lane_word in ("left_turn", "right_turn") for v in vehicles)
+    return any({v.maneuver, v.meant} & set(turns) or v.lane_word in ("left_turn", "right_turn") for v in vehicles)
