@@ -22,6 +22,7 @@ from sgcad_core.planner.lines.walkers import walking_courses
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import CLEAR_M, Scene
 from sgcad_core.planner.towing import ahead_of
+from sgcad_core.records.course import NOTHING_TOLD, Courses, CourseTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, size_m
 
 GAP_M = 2.0
@@ -35,6 +36,8 @@ _WALKED_S = (0.0, 0.6, -0.6, 1.2, -1.2, 2.0, -2.0, 3.0, -3.0)
 """Own times of a pedestrian at the first contact; at 0 in the middle of the lane."""
 _ROLLS_ON_M = 14.0
 """Way of one that still rolls when it is struck, to where it stands behind the others."""
+_PUSHED_M = 9.0
+"""Way of one that stands and is struck from behind at the usual speed of a street."""
 _HEADWAY_M, _EARLIER_S = 4.0, 0.7
 """From one that slows to the one behind it once both stand; time by which it does the same earlier."""
 _INTO_M = 1.0
@@ -58,8 +61,10 @@ def led_by(behavior: BehaviorSpec, actor: Actor) -> Actor | None:
     return next(iter([*waiting, *same]), None)
 
 
-def with_company(behavior: BehaviorSpec, courses: Mapping[str, Course]) -> dict[str, Course]:
-    """The courses, with the room that vehicles need which stand ahead in the lane."""
+def with_company(
+    behavior: BehaviorSpec, courses: Mapping[str, Course], told: Courses = NOTHING_TOLD
+) -> dict[str, Course]:
+    """The courses, with the room that vehicles need which stand ahead in the lane, and that of the push towards them."""
     found = dict(courses)
     if waits := _behind_one_that_backs(behavior):
         found[waits[0]] = replace(found[waits[0]], queued_m=found[waits[0]].queued_m + waits[1])
@@ -68,9 +73,18 @@ def with_company(behavior: BehaviorSpec, courses: Mapping[str, Course]) -> dict[
         if leader is None:
             continue
         for other in _lane_of(behavior, leader):
-            queued_m = found[other.id].queued_m or (_ROLLS_ON_M if leader.maneuver == "slowing" else 0.0)
+            rolls_m = _ROLLS_ON_M if leader.maneuver == "slowing" else _pushed_m(behavior, told, leader)
+            queued_m = found[other.id].queued_m or rolls_m
             found[other.id] = replace(found[other.id], queued_m=queued_m + size_m(actor)[0] + GAP_M)
     return found
+
+
+def _pushed_m(behavior: BehaviorSpec, told: Courses, leader: Actor) -> float:
+    """The way by which a standing one is pushed on by a blow from behind that is not told to be slight."""
+    first = behavior.first_meeting
+    hit = first is not None and (first.struck, first.struck_area) == (leader.id, "back")
+    slight = any(told.get(who, CourseTold()).slight for who in (leader.id, first.striker if first else ""))
+    return 0.0 if slight or not hit else _PUSHED_M
 
 
 def _behind_one_that_backs(behavior: BehaviorSpec) -> tuple[str, float] | None:

@@ -86,7 +86,7 @@ def plan(
     behavior = into_gores(behavior)
     courses = off_and_back(courses, (s.by for s in struck_before(behavior, behavior.contacts) if s.thing.firm))
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
-    lines = with_company(behavior, {a.id: course_of(graph, a, gentle) for a in behavior.actors})
+    lines = with_company(behavior, {a.id: course_of(graph, a, gentle) for a in behavior.actors}, courses)
     conflicts = Conflicts(behavior, lines, may_skid, by_force, courses)
     cast = _Cast(behavior, lines, tractors(behavior), courses, [note for line in lines.values() for note in line.notes])
     contacts, near = cast.contacts, behavior.near_crash

@@ -109,13 +109,14 @@ class Numbering:
             return match.group()
         self.last = match, actor
         actor.at = self.at
+        parted = known is not None and match.string.startswith("'", match.end())
         actor.stands = actor.stands or phrase.stands
         actor.announced = actor.announced and self.announcing
         words = phrase.head.split() if match["automated"] else phrase.modifiers
         actor.heads |= {phrase.head, *(w for w in words if w in BODY_WORDS)}
         actor.names |= phrase.names
         actor.part = actor.part or phrase.part
-        return self._written(phrase, actor, known is None)
+        return self._written(phrase, actor, known is None, "" if parted else phrase.clauses)
 
     def is_no_actor(self, phrase: Phrase) -> bool:
         """Whether a phrase names no single actor that gets a number."""
@@ -166,14 +167,15 @@ class Numbering:
             return self.cast.meant(phrase) or self.cast.open(phrase)
         return self.cast.open(phrase) if not self.announcing else None
 
-    def _written(self, phrase: Phrase, actor: Actor, first: bool) -> str:
+    def _written(self, phrase: Phrase, actor: Actor, first: bool, clauses: str) -> str:
+        """The number, at first behind the words that describe the actor, and its `clauses`."""
         match = phrase.match
         owner = "'s" if match["many"] else ""
         if (actor.subject and match["automated"]) or not first:
-            return f"V{actor.number}{owner}{phrase.clauses}"
+            return f"V{actor.number}{owner}{clauses}"
         det, words = match["det"] or "the", match.group()[len(match["det"] or "") :].strip()
         det = {"another": "a", "one": "a", **dict.fromkeys(("its", *_OWNERS), "the")}.get(det.lower(), det)
-        return self.introduced(f"{det} {words}", f"(V{actor.number}){phrase.clauses}")
+        return self.introduced(f"{det} {words}", f"(V{actor.number}){clauses}")
 
     def introduced(self, words: str, number: str) -> str:
         """The words that first describe an actor, with its number."""

@@ -179,8 +179,11 @@ def _fits(actor: Actor, phrase: Phrase) -> bool:
     """Whether the words of a phrase may mean an actor."""
     if phrase.head in actor.heads:
         return True
-    if (makes := _makes(phrase.names)) and (known := _makes(actor.names)) and not makes & known:
-        return False
+    if (makes := _makes(phrase.names)) and (known := _makes(actor.names)):
+        if not makes & known:
+            return False
+        if not phrase.match["body"]:  # "the Acme" behind "an Acme Aster", whatever kind of vehicle that is
+            return True
     if phrase.kind == actor.kind:
         return True
     vehicle = not no_vehicle(actor.kind)

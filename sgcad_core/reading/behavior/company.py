@@ -104,7 +104,8 @@ def _vehicles(sentence: Sentence, reading: Reading) -> Iterator[_Told]:
     for match in rule("company.waits_for").finditer(sentence.text):
         where = match["where"] or ""
         in_front = "in front of" in where or "ahead of" in where
-        if in_front or not elsewhere.search(f"{match['words']} {where}"):
+        walks = actor_kind(kind_of(match["words"], None)[0]).walks  # told as one of the people instead
+        if not walks and (in_front or not elsewhere.search(f"{match['words']} {where}")):
             yield _Told(
                 vehicle_kind(match["words"]), reading.actor(match["id"]), named_before(sentence.text, match.start())
             )

@@ -6,7 +6,7 @@ Also the area pairs that stand behind a verb ("front to left side"). Reads sente
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from sgcad_core.reading.actors.vehicles import MENTION, Roster
@@ -251,3 +251,31 @@ def with_damage(mention: ContactMention | None, scope: str) -> ContactMention | 
         return mention
     found = rule("contact_words.damaging").given(vehicle=mention.other).search(scope)
     return replace(mention, other_area=area_of(found["area"] or found["part"])) if found else mention
+
+
+def with_damages(
+    found: tuple[ContactMention, ...], statements: Iterable[Statement], roster: Roster
+) -> tuple[ContactMention, ...]:
+    """The contacts; that of a report without numbers which tells of one pair alone with the sides that no contact
+    tells but a sentence of their damage: "V2 sustained damage to its left door"."""
+    pairs = {frozenset((b.actor, b.other)) for b in found if b.other in roster.ids}
+    if not roster.counted or len(pairs) != 1:
+        return found
+    told = {who: area for who in min(pairs) if (area := _damage(who, statements, roster))}
+    silent = {who for who in told if all(b.areas_of(who)[0] is None for b in found if who in (b.actor, b.other))}
+    return tuple(
+        replace(
+            b,
+            actor_area=told[b.actor] if b.actor in silent else b.actor_area,
+            other_area=told[b.other] if b.other in silent else b.other_area,
+        )
+        for b in found
+    )
+
+
+def _damage(who: str, statements: Iterable[Statement], roster: Roster) -> Zone | None:
+    """The side at which the first sentence of its damage tells it; a part without a side tells none."""
+    damage = rule("contact_words.damage_of").given(vehicle=who)
+    texts = (plain(t, roster) for t in statements if t.role not in ("codes", "factors", "interview"))
+    areas = (area_of(m["own"] or m["area"]) for text in texts for m in damage.finditer(text))
+    return next(filter(None, areas), None)

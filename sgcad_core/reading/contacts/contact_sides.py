@@ -108,7 +108,7 @@ def _less_of_a_striker(inferred: CrashInferred, a: str, b: str) -> bool:
 def _brushed(
     inferred: CrashInferred, mention: ContactMention, area_a: Area | None, area_b: Area | None
 ) -> tuple[Area | None, Area | None]:
-    """Gives an overtaking vehicle the flank that faces the told corner or flank of the other one."""
+    """Gives an overtaking vehicle, and one that goes along a front corner, the flank that faces the other one."""
     oncoming = (
         apart(between(inferred.headings.get(mention.actor, "N"), inferred.headings.get(mention.other, "N")), 180) <= 45
     )
@@ -117,7 +117,19 @@ def _brushed(
         if mine is None and flank and inferred.maneuvers[me] == "overtaking":
             touching: Area = flank if oncoming else OPPOSITE_HAND[flank]  # type: ignore[assignment]
             return (touching, area_b) if me == mention.actor else (area_a, touching)
-    return area_a, area_b
+    return _goes_along(inferred, mention) or (area_a, area_b)
+
+
+def _goes_along(inferred: CrashInferred, mention: ContactMention) -> tuple[Area, Area] | None:
+    """The flanks of one that is told to touch, with no side, a front corner of another one that drives its way: it
+    would not meet that end in driving on."""
+    a, b = mention.actor, mention.other
+    end, _, hand = (mention.other_area or "").partition("/")
+    along = between(inferred.headings.get(a, "N"), inferred.headings.get(b, "N")) == 0
+    moves = inferred.maneuvers[a] in ("straight", *_SIDLING) and inferred.maneuvers[b] != "backing"
+    if mention.actor_area or mention.mutual or not (along and moves and end == "front" and hand in OPPOSITE_HAND):
+        return None
+    return OPPOSITE_HAND[hand], hand  # type: ignore[return-value]
 
 
 def _sideswiped(inferred: CrashInferred, a: str, b: str) -> tuple[Area, Area]:

@@ -28,6 +28,7 @@ from sgcad_core.reading.contacts.contact_nouns import (
     touches,
     unnamed_pair,
     with_damage,
+    with_damages,
     with_striker,
     without_agent,
 )
@@ -63,8 +64,8 @@ def contact_mentions(statements: Iterable[Statement], roster: Roster) -> tuple[C
         (crash if told else retold).extend(_sentence(t, roster))
     first = min((b.number for b in crash if b.other in roster.ids), default=0)
     early = [b for b in retold if b.number < first and b.other in roster.ids]
-    late = [b for b in retold if b not in early]
-    return off_the_ground((*early, *crash, *late)) or _only_named(statements, roster)
+    found = off_the_ground((*early, *crash, *(b for b in retold if b not in early)))
+    return with_damages(found, statements, roster) or _only_named(statements, roster)
 
 
 def _only_named(statements: Iterable[Statement], roster: Roster) -> tuple[ContactMention, ...]:

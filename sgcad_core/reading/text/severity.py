@@ -9,9 +9,13 @@ from sgcad_core.reading.text.normalise import Sentence
 
 
 def is_slight(sentences: Iterable[Sentence]) -> bool:
-    """Whether a sentence tells that a blow was slight, and none that it was hard: one towed, hurt or badly damaged."""
+    """Whether a sentence tells a slight blow, or no more than a contact, and none a hard one: one towed, hurt or badly
+    damaged."""
     told = [sentence.text for sentence in sentences]
-    return not any(map(_severe, told)) and any(rule("severity.slight").search(text) for text in told)
+    if any(map(_severe, told)):
+        return False
+    touched = any(map(rule("severity.touched").search, told)) and not any(map(rule("severity.blow").search, told))
+    return touched or any(map(rule("severity.slight").search, told))
 
 
 def _severe(text: str) -> bool:

@@ -84,6 +84,13 @@ def test_room_before_the_junction_is_left_for_those_ahead():
     assert behind["V1"][0, 1] < alone["V1"][0, 1] - 4.0
 
 
+def test_one_that_is_pushed_from_behind_leaves_the_queue_its_place_before_the_junction():
+    queue = (car("V3", "stopped"), car("V4", "stopped"))
+    behind = planned("four_leg", car("V1", "stopped"), car("V2", "straight", speed_mph=35), *queue)
+    edge = -2.0 - size_m(queue[0])[0] / 2
+    assert behind["V3"][0, 1] < edge and behind["V4"][0, 1] < edge
+
+
 @pytest.mark.parametrize(("actor", "leader"), [
     (car("V3", "stopped"), "V1"), (car("V3", "stopped", lane=2), None), (car("V3", "parked"), None),
     (car("V3", "straight"), None), (car("V3", "stopped", road="N"), None), (walker(), "V1"),

@@ -17,6 +17,10 @@ NUMBERED = [
     ("A van hit the test vehicle.", "A van (V2) hit V1."),
     ("The subject vehicle stopped. Another car struck the subject vehicle.", "V1 stopped. a car (V2) struck V1."),
     ("A sedan passed. A second sedan struck the first sedan.", "A sedan (V1) passed. A second sedan (V2) struck V1."),
+    ("The Acme AV was stopped. A van hit the stationary Acme AV's rear bumper.",
+     "V1 was stopped. A van (V2) hit V1's rear bumper."),
+    ("The Acme AV was stopped. A Honda CR-V hit it. The Honda's bumper was dented.",
+     "V1 was stopped. A Honda CR-V (V2) hit it. V2's bumper was dented."),
     ("A car hit another car.", "A car (V1) hit a car (V2)."),
 ]  # fmt: skip
 

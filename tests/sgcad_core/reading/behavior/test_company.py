@@ -51,6 +51,11 @@ def test_who_is_told_ahead_joins(text, expected):
     assert joined(f"{text} V2 was traveling north. {BEHIND}")[0] == expected
 
 
+def test_a_pedestrian_who_is_yielded_to_is_no_vehicle_ahead():
+    text = "The AV was northbound on Elm Street and yielded to a pedestrian in the crosswalk when a van rear-ended it."
+    assert [(kind, maneuver) for _, kind, maneuver in joined(text)[0]] == [("pedestrian", "straight")]
+
+
 def test_they_stand_in_the_lane_of_the_one_that_waits():
     found = joined(
         f"V1 was traveling north in lane two of three and slowed for stopped traffic. V2 was north. {BEHIND}"

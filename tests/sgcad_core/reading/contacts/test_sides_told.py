@@ -87,6 +87,14 @@ def first_sides(text: str) -> tuple[str, str]:
     return first.striker_area, first.struck_area
 
 
+def test_one_that_goes_along_a_front_corner_touches_it_with_its_flank() -> None:
+    text = (
+        "The AV was stopped at a red light on northbound Elm Street. A lane-splitting motorcycle made contact with the "
+        "AV's right front corner."
+    )
+    assert first_sides(text) == ("left", "right")
+
+
 def test_a_rear_corner_that_stands_and_is_passed_is_its_end() -> None:
     text = (
         "The AV was stopped eastbound when a car that had been behind the AV began to maneuver around the AV on its "

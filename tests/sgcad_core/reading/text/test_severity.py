@@ -25,6 +25,16 @@ def test_a_blow_is_slight_where_nothing_speaks_of_a_hard_one(told: str, slight: 
     assert read(f"{_STRUCK} {told}").crash.slight is slight
 
 
+@pytest.mark.parametrize(("told", "slight"), [
+    ("A taxi approached from behind and made contact with its rear.", True),
+    ("It was then rear-ended by a taxi.", True),
+    ("It was rear-ended by a rapidly approaching taxi.", False),
+    ("A taxi failed to stop and collided with its rear. Contact was made at its bumper.", False),
+])  # fmt: skip
+def test_a_mere_contact_is_slight(told: str, slight: bool) -> None:
+    assert read(f"The van was stopped at a red light. {told}").crash.slight is slight
+
+
 def test_numbered_reports_have_their_own_speeds() -> None:
     report = "V1 was stopped at a red light. The front of V2 struck the back of V1. V1 had minor damage."
     assert not read(report).crash.slight
