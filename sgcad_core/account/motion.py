@@ -1,7 +1,5 @@
-"""Stated motion of vehicles against executed motion, fact by fact, with the criteria of `sgcad score`.
-
-An absent vehicle is one lacking item, its motion none. Angles are clockwise degrees from north.
-"""
+"""Stated motion of vehicles against executed motion, fact by fact, with the criteria of `sgcad score`. An absent
+vehicle is one lacking item, its motion none. Angles are clockwise degrees from north."""
 
 from __future__ import annotations
 
@@ -33,6 +31,8 @@ _HEADING_RAD = math.radians(45.0 + 22.5)
 _LIES = {"wheels": "wheels", "roof": "roof", "left": "left side", "right": "right side"}
 _STANDS_MPS = 1.0
 """Below it a vehicle stands, as reports have it."""
+_AWAY_M = 6.0
+"""Distance from its first contact beyond which one that still drives is seen to leave."""
 _SPIN_DEG = 60.0
 """Tolerance of a stated angle of spin: reports give quarter turns."""
 
@@ -260,12 +260,13 @@ def _to_lane(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
     return Comparison(told.taken(made.graph, steps), at.place if at else None, seen)
 
 
-def _joins(road_name: Callable[[ExecutedCase, str], str | None]) -> Judge:
-    """A comparison of the kind of road that a vehicle comes from or enters."""
+def _joins(end: str) -> Judge:
+    """A comparison of the kind of road that a vehicle comes from or enters; `end`: as the behavior calls it."""
 
     def judged(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
         wanted = {DRIVEWAY: DRIVEWAY, ALLEY: ALLEY, PARKING_LOT: DRIVEWAY, RAMP: RAMP}.get(str(value))
-        spec, name = made.network.spec, road_name(made, who)
+        actors = made.scenario.behavior.actors if made.scenario.behavior else ()
+        spec, name = made.network.spec, next((getattr(a, end) for a in actors if a.id == who), None)
         if wanted is None or spec is None or name is None:
             return None
         kind = next((ALLEY if road.alley else road.kind for road in spec.roads if road.id == name), "road")
@@ -275,26 +276,24 @@ def _joins(road_name: Callable[[ExecutedCase, str], str | None]) -> Judge:
     return judged
 
 
+def _leaves(made: ExecutedCase, who: str, value: Value) -> Comparison:
+    """Whether a vehicle still drives in the end, away from the place of its first contact."""
+    one = VehicleMotion(made.crash, who)
+    away_m = math.dist(one.path.pose[one.hit, :2], one.path.pose[-1, :2])
+    drives = float(made.tracks[who].speed_mps[-1]) > _STANDS_MPS
+    return Comparison(drives and away_m > _AWAY_M, round(away_m), "it stays at the scene")
+
+
 def _in_gore(made: ExecutedCase, who: str) -> bool:
     """Whether it crosses the gore of a ramp, so that it is on the ramp for a while."""
     behavior = made.scenario.behavior
     return behavior is not None and any(a.gore for a in behavior.actors if a.id == who)
 
 
-def _start(made: ExecutedCase, who: str) -> str | None:
-    behavior = made.scenario.behavior
-    return next((a.road for a in behavior.actors if a.id == who), None) if behavior else None
-
-
-def _exit(made: ExecutedCase, who: str) -> str | None:
-    behavior = made.scenario.behavior
-    return next((a.exit_road for a in behavior.actors if a.id == who), None) if behavior else None
-
-
 _JUDGES: dict[str, Judge] = {
     "heading": _heading, "lane": _lane, "lane_word": _lane, "to_lane": _to_lane,
     "spin_deg": _spin_deg, "rest.side": _side, "rest.attitude": _attitude, "from_stop": _from_rest,
-    "from_rest": _from_rest, "comes": _comes, "rolls": _rolls, "straddles": _straddles,
-    "roll_quarters": _roll_quarters, "rolls_to": _rolls_to, "departs": _departs, "origin": _joins(_start),
-    "target": _joins(_exit), "rest.distance_m": _distance, "rest.lane": _rest_lane, "rest.lane_way": _rest_lane,
+    "from_rest": _from_rest, "comes": _comes, "leaves": _leaves, "rolls": _rolls, "straddles": _straddles,
+    "roll_quarters": _roll_quarters, "rolls_to": _rolls_to, "departs": _departs, "origin": _joins("road"),
+    "target": _joins("exit_road"), "rest.distance_m": _distance, "rest.lane": _rest_lane, "rest.lane_way": _rest_lane,
 }  # fmt: skip

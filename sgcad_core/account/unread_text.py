@@ -13,6 +13,7 @@ from itertools import combinations
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
 from sgcad_core.kinds import DRIVEWAY, JUNCTIONS, PARKING_LOT, ROUNDABOUT, actor_kind
+from sgcad_core.reading.actors.people_objects import kind_of_word
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.text.normalise import NUMBERS, Sentence
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES, is_impact
@@ -81,14 +82,29 @@ def _numbers(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     """Numbered vehicles that were not read, and counts above the number of vehicles in the scenario."""
     known = {v.id for v in made.reading.crash.vehicles} | set(made.tracks)
     for name in sorted(made.reading.named_in(sentence) - known):
-        who = next((f"{m['words']!r}" for m in _INTRODUCED.finditer(sentence.text) if m["id"] == name), name)
-        yield _lacks(sentence, "vehicle", name, f"{who} is named", "it is not in the scenario")
+        words = _introduced(made, name)
+        letter = kind_of_word(words.lower())[0] if words else "O"
+        if letter not in "OV" and any(one.startswith(letter) for one in made.tracks):
+            continue  # a person or an animal beside the contact, drawn with an id of its own
+        yield _lacks(
+            sentence,
+            "vehicle",
+            name,
+            f"{words!r} is named" if words else f"{name} is named",
+            "it is not in the scenario",
+        )
     for match in _COUNTED.finditer(sentence.text):
         count = NUMBERS.get(match["n"].lower()) or int(match["n"])
         there = sum(name.startswith("V") for name in made.tracks)
         if count > there:
             text = f"{count} vehicles are told ({match[0]!r})"
             yield _lacks(sentence, "vehicles", str(count), text, f"the scenario has {there}")
+
+
+def _introduced(made: ExecutedCase, name: str) -> str:
+    """The words by which a report without numbers first names an actor; empty where no sentence has them."""
+    told = (m for s in made.reading.sentences for m in _INTRODUCED.finditer(s.text))
+    return next((m["words"] for m in told if made.reading.actor(m["id"]) == name), "")
 
 
 def _called(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:

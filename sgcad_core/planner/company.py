@@ -64,7 +64,7 @@ def led_by(behavior: BehaviorSpec, actor: Actor) -> Actor | None:
 def with_company(
     behavior: BehaviorSpec, courses: Mapping[str, Course], told: Courses = NOTHING_TOLD
 ) -> dict[str, Course]:
-    """The courses, with the room that vehicles need which stand ahead in the lane, and that of the push towards them."""
+    """The courses, with the room that vehicles need which stand ahead in the lane, and of the push to them."""
     found = dict(courses)
     if waits := _behind_one_that_backs(behavior):
         found[waits[0]] = replace(found[waits[0]], queued_m=found[waits[0]].queued_m + waits[1])

@@ -15,6 +15,7 @@ from functools import cached_property
 from sgcad_core.case.records import ObservedContact, Record, Trajectory
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.actor_plan import Role
+from sgcad_core.planner.aftermath.drive_away import LEAVES_S, drive_away
 from sgcad_core.planner.aftermath.later_contacts import Ending, expect_later_contacts, strikes_of, struck_before
 from sgcad_core.planner.aftermath.rest_fit import Impact
 from sgcad_core.planner.aftermath.second_contact import MISSED
@@ -178,6 +179,7 @@ class _Cast:
         scene.settle()
         aside = [*knock_aside(scene, cast.early, surface), *drive_over(scene, ended.passed, surface)]
         notes = () if cast.possible or self.behavior.near_crash else tuple(scene.turn_over(self.told))
+        notes += tuple(drive_away(scene, self.courses, self.told))
         missed = ended.missed + cast.missed + MISSED * (len(aside) + cast.unmet(scene))
         return WholeCourse(scene, (*cast.notes, *ended.notes, *aside, *notes), cast.oddity, missed)
 
@@ -246,7 +248,8 @@ class _Cast:
         told_s = max((rest.distance_m or 0.0 for rest in rests), default=0.0) * _TOLD_S_PER_M - AFTER_S
         afar = len(self.contacts) > 1 or any(rest.where in ("off_road", "shoulder", "median") for rest in rests)
         further_s = _FURTHER_S + _EACH_S * max(len(self.contacts) - 2, 0) if afar else 0.0
-        return min(max(further_s, told_s), _MOST_S)
+        away_s = LEAVES_S if any(course.leaves for course in self.told.values()) else 0.0
+        return min(max(further_s, told_s, away_s), _MOST_S)
 
     # -------------------------------------------------------------- the others
     def _couple(self, scene: Scene, actor: str, own_s: float) -> None:

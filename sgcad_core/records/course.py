@@ -102,6 +102,8 @@ class CourseTold:
     """Passes a junction before it leaves the road."""
     moves: tuple[Move, ...] = ()
     """The moves before that contact in order, where they lead to more than one side: off the road, back, across."""
+    leaves: bool = False
+    """Drives away after its contacts."""
     spin: Spin | None = None
     """How it turned after its first contact."""
     spin_deg: float | None = None

@@ -109,6 +109,8 @@ def _brushed(
     inferred: CrashInferred, mention: ContactMention, area_a: Area | None, area_b: Area | None
 ) -> tuple[Area | None, Area | None]:
     """Gives an overtaking vehicle, and one that goes along a front corner, the flank that faces the other one."""
+    if along := _goes_along(inferred, mention):
+        return along
     oncoming = (
         apart(between(inferred.headings.get(mention.actor, "N"), inferred.headings.get(mention.other, "N")), 180) <= 45
     )
@@ -117,7 +119,7 @@ def _brushed(
         if mine is None and flank and inferred.maneuvers[me] == "overtaking":
             touching: Area = flank if oncoming else OPPOSITE_HAND[flank]  # type: ignore[assignment]
             return (touching, area_b) if me == mention.actor else (area_a, touching)
-    return _goes_along(inferred, mention) or (area_a, area_b)
+    return area_a, area_b
 
 
 def _goes_along(inferred: CrashInferred, mention: ContactMention) -> tuple[Area, Area] | None:

@@ -266,8 +266,7 @@ def _the_other(statement: Statement, actor: str, roster: Roster) -> str | None:
 
 
 def _not_itself(named: str, actor: str, roster: Roster, statement: Statement) -> str | None:
-    """The named vehicle, or another one where it would strike itself: the other of two, or the subject of the sentence
-    before."""
+    """The named vehicle; where it would strike itself the other one of two, or the subject of the sentence before."""
     if named != actor:
         return named
     return roster.other(actor) if roster.counted else _the_other(statement, actor, roster)

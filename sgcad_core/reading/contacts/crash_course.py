@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.contacts.before_contact import RETOLD, is_late, split
 from sgcad_core.reading.contacts.rest_words import HANDS, last_place, leaves_road, rest_lane, side_named, spin_told
-from sgcad_core.reading.contacts.road_departure import DepartureReader, MoveHeard, wandering
+from sgcad_core.reading.contacts.road_departure import DepartureReader, MoveHeard, left_scene, wandering
 from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.language import Rule, of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
@@ -105,6 +105,8 @@ def courses_told(
         late = is_late(segment, impact, late)
     if event and event.kind == "rollover":
         heard[event.vehicle].add("rolls", True, event.source)
+    for vehicle, source in left_scene(statements, roster, impact if impact < 10_000 else 0):
+        heard[vehicle].add("leaves", True, source)
     for one in heard.values():
         _keep_moves(one)
     courses = {v: one.course for v, one in heard.items() if not one.course.empty}

@@ -1,4 +1,5 @@
-"""Whether and on which side a vehicle leaves the road before its first contact, as its narrative tells it in order.
+"""Whether and on which side a vehicle leaves the road before its first contact, as its narrative tells it in order; and
+which ones leave the scene behind it.
 
 Reads the texts of one vehicle before that contact. The last word counts: who comes back on the road has not left it.
 The moves on the way there are kept in their order. Knows no heading and no road.
@@ -12,7 +13,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
+from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.language import Rule, rule
+from sgcad_core.reading.motion.clauses import Statement
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.compass import WORDS
 from sgcad_core.records.course import DepartureSide, Hand, Move, MoveKind, Spin
 
@@ -150,3 +154,15 @@ def _side(text: str, left: re.Match[str]) -> DepartureSide | None:
         word = within["side"].lower()
         return _HANDS.get(word) or WORDS.get(word)
     return _HANDS[bare["hand"].lower()] if bare else None
+
+
+def left_scene(statements: Sequence[Statement], roster: Roster, impact: int) -> Iterator[tuple[str, Source]]:
+    """Vehicles of a report without numbers that drive away from the subject, and where that is told: not before the
+    sentence `impact`."""
+    left = rule("departures.left_scene")
+    for t in statements if roster.counted else ():
+        for m in left.finditer(t.text) if t.number >= impact and t.role not in ("codes", "factors") else ():
+            who = m["who"] or m["stays"] or ""
+            vehicle = who if who in roster.ids else roster.other(roster.ids[0]) if m["other"] else None
+            if vehicle in roster.ids[1:] and vehicle is not None:
+                yield vehicle, Source(t.number, m[0], left.id)
