@@ -19,19 +19,24 @@ _STANDING_S = (0.0, -1.3, -2.6, 1.3, -3.9, -5.2, 2.6, -6.5, -8.0, 4.0, -10.0, -1
 _WAYS = 6
 
 
-def place_clear(scene: Scene, role: Role) -> str | None:
-    """Places an actor outside the contacts. Returns a note where it could not be kept clear to the end."""
+def place_clear(scene: Scene, role: Role, *, passes: bool = False) -> str | None:
+    """Places an actor outside the contacts; one that `passes` does not stop for them where its way stays free. Returns
+    a note where it could not be kept clear to the end."""
     best: tuple[int, Motion, float] | None = None
+    goes_on = False
     for motion, own in _tries(role):
-        poses = scene.poses(motion, own, brakes=True)
-        free = scene.clear_until(poses, motion.size, CLEAR_M)
+        free = scene.clear_until(scene.poses(motion, own, brakes=True), motion.size, CLEAR_M)
         if best is None or free > best[0]:
             best = (free, motion, own)
         if free == scene.count:
+            goes_on = (
+                passes
+                and scene.clear_until(scene.poses(motion, own, brakes=False), motion.size, CLEAR_M) == scene.count
+            )
             break
     if best is None:
         return None
-    scene.add(role.actor.id, role.actor.kind, best[1], best[2], brakes=True)
+    scene.add(role.actor.id, role.actor.kind, best[1], best[2], brakes=not goes_on)
     return f"{role.actor.id} could not be kept clear of the others" if best[0] < scene.count else None
 
 

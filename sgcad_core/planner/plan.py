@@ -248,8 +248,7 @@ class _Cast:
         told_s = max((rest.distance_m or 0.0 for rest in rests), default=0.0) * _TOLD_S_PER_M - AFTER_S
         afar = len(self.contacts) > 1 or any(rest.where in ("off_road", "shoulder", "median") for rest in rests)
         further_s = _FURTHER_S + _EACH_S * max(len(self.contacts) - 2, 0) if afar else 0.0
-        away_s = LEAVES_S if any(course.leaves for course in self.told.values()) else 0.0
-        return min(max(further_s, told_s, away_s), _MOST_S)
+        return min(max(further_s, told_s, LEAVES_S * any(its.leaves for its in self.told.values())), _MOST_S)
 
     # -------------------------------------------------------------- the others
     def _couple(self, scene: Scene, actor: str, own_s: float) -> None:
@@ -278,7 +277,8 @@ class _Cast:
             if actor.id in scene.tracks or self.tractors.get(actor.id) or actor.id in self.things | aside:
                 continue
             ahead = stand_ahead(scene, actor, self.behavior, self.courses)
-            if not ahead and (note := place_clear(scene, (self.role if self.possible else self.alone)(actor.id))):
+            role = (self.role if self.possible else self.alone)(actor.id) if not ahead else None
+            if role and (note := place_clear(scene, role, passes=bool(scene.tracks) and actor.id not in self.told)):
                 self.notes.append(note)
             track = scene.tracks[actor.id]
             own = track.own_s if track.motion.standing else track.own_s + scene.contact * STEP_S

@@ -34,7 +34,7 @@ _RETURNS_M = 20.0
 """Way on which it comes back into its lane."""
 _ASKEW_RAD = math.radians(50.0)
 """One that has turned further from its road does not simply drive on."""
-_CLEAR_M, _NEAR_M, _SUNK_M = 0.2, 4.0, -0.03
+_CLEAR_M, _NEAR_M, _SUNK_M = 0.2, 4.0, -0.06
 """Distance to others, from some metres behind the start on; there it may still touch as it did."""
 _AWAY_M = 10.0
 

@@ -126,7 +126,8 @@ class _Rest(Numbering):
         known = super()._known(phrase)
         match = phrase.match
         named = match["automated"] or _of_company(match)  # "struck the Acme vehicle from the rear" tells no place of it
-        beside = not named and rule("references.elsewhere").match(match.string, match.end())
+        elsewhere = phrase.part or rule("references.elsewhere").match(match.string, match.end())
+        beside = elsewhere and not named
         if known and known.subject and beside:
             known = None  # "the vehicle behind" is not the numbered one itself
         new = known is not None and not known.subject and not known.at and phrase.order is None

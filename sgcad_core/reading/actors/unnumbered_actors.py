@@ -143,7 +143,9 @@ class NamedActors:
         if (subject := self.subject()) and self.automated and self._by_name(phrase) == [subject]:
             return subject
         others = sorted((a for a in self.actors if not (a.subject and self.automated)), key=lambda a: -a.at)
-        others = [a for a in others if phrase.part in (None, a.part)] or [a for a in others if not a.part]
+        others = [a for a in others if phrase.part in (None, a.part)] or [
+            a for a in others if not (a.part or a.subject)
+        ]
         fitting = [a for a in others if phrase.head in a.heads] or [a for a in others if _fits(a, phrase)]
         fitting = fitting or [a for a in others if phrase.head in TRUCK_PARTS and a.kind in _TRUCKS]
         if phrase.stands and (standing := [a for a in fitting if a.stands]):

@@ -25,6 +25,7 @@ from sgcad_core.records.specs import Area
 
 QUARTERS = (0, 90, 180, 270)
 
+_REAR_END = {"front", "back"}
 _STREET = 2.0
 """That both are told by name to drive on one street, or on two."""
 
@@ -41,7 +42,13 @@ def relative(crash: CrashTold, inferred: CrashInferred, a: str, b: str, pairs: l
             0.5 if is_sideswipe(mention) else 0.0
         )  # five in six sideswipes are of vehicles that drive the same way
         if not (_on_foot(crash, a, b) and {mention.actor_area, mention.other_area} <= {"front", None}):
-            _add_contact(score, inferred, a, b, mention)  # a front meets people whichever way they walk
+            follows = (
+                crash.roster.counted and {end_of(x) for x in (mention.actor_area, mention.other_area)} == _REAR_END
+            )
+            if follows:  # into the rear of one that turns as well: it comes up behind it
+                score[0] += 1.5
+            else:
+                _add_contact(score, inferred, a, b, mention)  # a front meets people whichever way they walk
     return max(QUARTERS, key=lambda q: score[q])
 
 

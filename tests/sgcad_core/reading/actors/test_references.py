@@ -21,6 +21,8 @@ NUMBERED = [
      "V1 was stopped. A van (V2) hit V1's rear bumper."),
     ("The Acme AV was stopped. A Honda CR-V hit it. The Honda's bumper was dented.",
      "V1 was stopped. A Honda CR-V (V2) hit it. V2's bumper was dented."),
+    ("An Acme vehicle was stopped in traffic. It was following the car ahead when vehicle 2 struck it.",
+     "An Acme vehicle (V1) was stopped in traffic. It was following the car (V3) ahead when V2 struck it."),
     ("A car hit another car.", "A car (V1) hit a car (V2)."),
 ]  # fmt: skip
 

@@ -33,3 +33,8 @@ def test_the_street_on_which_one_stands_tells_where_it_heads() -> None:
     ):
         crash = read(f"The AV was {place} when a car made contact with the rear of the AV.").crash
         assert {v.heading for v in crash.vehicles} == {"E"}
+
+
+def test_one_that_runs_into_the_rear_of_a_turning_vehicle_comes_up_behind_it() -> None:
+    crash = read("The AV was turning left from northbound Elm Street when it was rear-ended by a van.").crash
+    assert [v.heading for v in crash.vehicles] == ["N", "N"]
