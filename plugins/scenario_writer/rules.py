@@ -19,7 +19,7 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Ask
 from sgcad_core.reading.behavior.behavior import behavior_of_facts, with_acts_read
 from sgcad_core.reading.behavior.company import with_company
-from sgcad_core.reading.behavior.passers_by import with_passers_by
+from sgcad_core.reading.behavior.passers_by import with_parked_rows, with_passers_by
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.layout.layout_facts import lane_notes
 from sgcad_core.reading.reading import Reading
@@ -73,6 +73,7 @@ class Rules(PlannedWriter):
         courses = facts.driven
         behavior = with_acts_read(behavior_of_facts(facts, spec), courses, reading.signals)
         behavior = with_passers_by(with_company(behavior, reading), reading, spec)
+        behavior = with_parked_rows(behavior, reading, spec)
         return self._of_behavior(behavior, courses, network, reading)
 
     def _of_behavior(

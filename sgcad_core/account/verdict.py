@@ -125,14 +125,28 @@ def guesses(made: ExecutedCase) -> Iterator[Item]:
     if first is None or len(crash.vehicles) < 2:
         return
     for name in (first.striker, first.struck):
-        vehicle = crash.vehicle(name)
+        vehicle, other = crash.vehicle(name), crash.vehicle(first.struck if name == first.striker else first.striker)
         if vehicle is None or vehicle.heading_stated or vehicle.maneuver == "parked" or _backs_out(made, vehicle):
+            continue
+        if _is_base(made, vehicle) or (other and _changes_lanes(vehicle, other)):
             continue
         if not _told_beside(made, name) and not _from_behind(first.striker_area, first.struck_area):
             yield Item(
                 kind="guessed", field=f"vehicles.{name}.heading", subject=name, value=vehicle.heading,
                 text=phrase(f"vehicles.{name}.heading", vehicle.heading), reason="told nowhere",
             )  # fmt: skip
+
+
+def _is_base(made: ExecutedCase, vehicle: VehicleFacts) -> bool:
+    """Whether no heading is told at all and it is the first vehicle: then only those of the others against it count."""
+    return not made.reading.crash.oriented and vehicle is made.reading.crash.vehicles[0]
+
+
+def _changes_lanes(one: VehicleFacts, other: VehicleFacts) -> bool:
+    """Whether two drive one way and one of them changes lanes, merges or passes: that is done in the lanes of one
+    direction."""
+    moves = ("lane_change_left", "lane_change_right", "merge", "overtaking")
+    return one.heading == other.heading and any(v.maneuver in moves for v in (one, other))
 
 
 def _backs_out(made: ExecutedCase, vehicle: VehicleFacts) -> bool:

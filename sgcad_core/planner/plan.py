@@ -179,7 +179,7 @@ class _Cast:
         scene.settle()
         aside = [*knock_aside(scene, cast.early, surface), *drive_over(scene, ended.passed, surface)]
         notes = () if cast.possible or self.behavior.near_crash else tuple(scene.turn_over(self.told))
-        notes += tuple(drive_away(scene, self.courses, self.told))
+        notes += tuple(drive_away(scene, self.courses, self.told, self.possible))
         missed = ended.missed + cast.missed + MISSED * (len(aside) + cast.unmet(scene))
         return WholeCourse(scene, (*cast.notes, *ended.notes, *aside, *notes), cast.oddity, missed)
 

@@ -1,5 +1,7 @@
 """Vehicles that leave the scene, as told: behind their contact they drive on along their road, round what stands there.
 
+One that brushes another one slightly as it passes drives on as well, and stops further on in its lane.
+
 One that still rolls drives on; one that stands waits, backs where it is too near to go round, and goes. Replaces poses
 when all else is settled, and only by a way that is clear of all others and on the road. Knows scenes and courses.
 """
@@ -7,17 +9,19 @@ when all else is settled, and only by a way that is clear of all others and on t
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats, gaps_where_near, wrap_angle
+from sgcad_core.planner.actor_plan import is_beside
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.path import ramp
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import Scene, Track, sample_speeds
 from sgcad_core.records.course import Courses, CourseTold
+from sgcad_core.records.specs import Contact
 
 LEAVES_S = 7.0
 """Additional time after the first contact in which a vehicle drives away."""
@@ -26,6 +30,8 @@ _PARTS_S, _WAITS_S = 0.4, 0.8
 _ROLLS_MPS, _STANDS_MPS = 3.0, 0.15
 _GOES_MPS, _GAINS_MPS2 = 9.0, 2.2
 """Speed of one that drives away, and its acceleration."""
+_STOPS_M, _STOPS_MPS2 = 16.0, (1.2, 3.0)
+"""Way to its stop of one that drives on a little, and the least and the most that it brakes."""
 _BACKS_M, _BACKS_MPS, _BACKS_MPS2 = (4.0, 7.0), 2.4, 1.6
 """Ways, speed and acceleration of one that first backs away from what it struck."""
 _BLEND_M, _BLENDS = 11.0, 3.2
@@ -36,6 +42,8 @@ _ASKEW_RAD = math.radians(50.0)
 """One that has turned further from its road does not simply drive on."""
 _CLEAR_M, _NEAR_M, _SUNK_M = 0.2, 4.0, -0.06
 """Distance to others, from some metres behind the start on; there it may still touch as it did."""
+_ALONG_M = 16.0
+"""The same of one that goes on along another one: both lengths."""
 _AWAY_M = 10.0
 
 
@@ -53,21 +61,36 @@ class _Start:
     mps: float
 
 
-def drive_away(scene: Scene, courses: Mapping[str, Course], told: Courses) -> Iterator[str]:
-    """Lets vehicles drive away that are told to leave; a note on each one that cannot."""
+def drive_away(
+    scene: Scene, courses: Mapping[str, Course], told: Courses, contacts: Sequence[Contact]
+) -> Iterator[str]:
+    """Lets vehicles drive away that are told to leave; a note on each one that cannot. One that brushes the flank of
+    another one in the only contact, a slight one, drives on a little."""
+    brushed = {v for c in contacts if len(contacts) == 1 and is_beside(c.striker_area) and is_beside(c.struck_area)
+               for v in (c.striker, c.struck)}  # fmt: skip
     for name, track in scene.tracks.items():
-        if not told.get(name, CourseTold()).leaves or name not in courses or track.hit is None:
+        its = told.get(name, CourseTold())
+        stops = name in brushed and its.slight and its.rest.empty and not its.leaves
+        if not (its.leaves or stops) or name not in courses or track.hit is None:
             continue
-        way = next(_ways(scene, track, courses[name]), None)
-        if way is None:
+        way = next(_ways(scene, track, courses[name], stops=stops), None)
+        if way is None and not stops:
             yield f"{name} stays at the scene, which it leaves as told: no way leads past the others"
-        else:
+        elif way is not None:
             track.poses = way
 
 
-def _ways(scene: Scene, track: Track, course: Course) -> Iterator[Floats]:
-    """Poses of the whole track with each possible way, the plainest first."""
+def _ways(scene: Scene, track: Track, course: Course, *, stops: bool) -> Iterator[Floats]:
+    """Poses of the whole track with each possible way, the plainest first; `stops`: of one that still rolls, in its
+    lane, to a stop."""
     for start in _starts(track, course):
+        if stops and start.mps > _ROLLS_MPS:
+            poses = track.poses.copy()
+            poses[start.sample :] = _driven(start, (0.0, math.inf, 0.0), course, len(poses) - start.sample, stops=True)
+            if _is_free(scene, track, poses, start, near_m=_ALONG_M):
+                yield poses
+        if stops:
+            continue
         for left_m in _lines(track, course, start):
             past_m = _past(scene, track, course, start) if left_m > course.own_left_m - track.size[1] / 2 else math.inf
             for backs_m in (0.0,) if start.mps > _ROLLS_MPS else (0.0, *_BACKS_M):
@@ -123,13 +146,19 @@ def _past(scene: Scene, track: Track, course: Course, start: _Start) -> float:
     return max(ends) + _NEAR_M
 
 
-def _driven(start: _Start, line: tuple[float, float, float], course: Course, count: int) -> Floats:
+def _driven(
+    start: _Start, line: tuple[float, float, float], course: Course, count: int, *, stops: bool = False
+) -> Floats:
     """(count, 3) poses from a start on: back, if it is to, then forward into a line beside the middle of its lane, and
-    into its lane again; `line`: how far to the left, to which station, and how far it first backs."""
+    into its lane again or to a stop; `line`: how far to the left, to which station, and how far it first backs."""
     left_m, past_m, backs_m = line
     time = np.arange(count) * STEP_S
     back, since = _backed(time.astype(float), backs_m)
     ahead = _gone(np.maximum(time - since, 0.0), start.mps if not backs_m else 0.0)
+    if stops:
+        slows = min(max(start.mps**2 / (2 * _STOPS_M), _STOPS_MPS2[0]), _STOPS_MPS2[1])
+        braked = np.minimum(time, start.mps / slows)
+        ahead = start.mps * braked - slows * braked**2 / 2
     turn_m = start.left_m - back * start.slope  # the line from which it goes forward
     begins = start.station_m - back
     length = max(_BLEND_M, _BLENDS * abs(left_m - float(turn_m[-1])))
@@ -169,11 +198,11 @@ def _gone(time: Floats, from_mps: float) -> Floats:
     return way
 
 
-def _is_free(scene: Scene, track: Track, poses: Floats, start: _Start) -> bool:
+def _is_free(scene: Scene, track: Track, poses: Floats, start: _Start, near_m: float = _NEAR_M) -> bool:
     """Whether a way comes near no other; at its start it may be as near as it stands there."""
     after = poses[start.sample :]
     moved = np.hypot(*(after[:, :2] - after[0, :2]).T)
-    wanted = np.where(np.maximum.accumulate(moved) > _NEAR_M, _CLEAR_M, _SUNK_M)
+    wanted = np.where(np.maximum.accumulate(moved) > near_m, _CLEAR_M, _SUNK_M)
     for other in scene.everybody.values():
         if other.actor != track.actor and not other.flat:
             gaps = gaps_where_near(after, track.size, other.poses[start.sample :], other.size, _CLEAR_M)

@@ -36,6 +36,9 @@ _ALONG_SIN, _BRUSHES = 0.35, ((0.25, 0.0), (0.5, 0.05), (0.12, 0.05))
 """Sine of the angle between two that drive along each other; overlaps at the end of a line that brushes, with costs."""
 _BRUSH_RUN, _BRUSH_LEAST_M = 8.0, 8.0
 """Length over width of such a line (an angle of 13 degrees), and its least length."""
+_GRAZE_RUN, _GRAZE_LATE = 15.0, 0.35
+"""Length over width of one that grazes slightly, and the share of it that is left where the ends of both meet: the two
+are nearly side by side by then."""
 
 
 def implied_crossings(role: Role) -> list[Drift]:
@@ -63,8 +66,9 @@ def brushing(role: Role) -> list[Drift]:
     found = []
     for overlap, cost in _BRUSHES:
         left = role.place.aside_m - hand * (touch - overlap)
-        run = max(_BRUSH_RUN * abs(left), _BRUSH_LEAST_M)
-        found.append(Drift(cost, left, run, role.place.station_m + run / 4, note=IMPLIED))
+        run = max((_GRAZE_RUN if role.told.slight else _BRUSH_RUN) * abs(left), _BRUSH_LEAST_M)
+        meets_m = (role.size[0] / 2 + _REAR_M) - _GRAZE_LATE * run if role.told.slight else -run / 4
+        found.append(Drift(cost, left, run, role.place.station_m - meets_m, note=IMPLIED))
     return found
 
 

@@ -1,4 +1,4 @@
-"""Traffic without a contact that a vehicle is told to yield to: one that passes on the other road, or comes against it.
+"""Vehicles without a contact beside those that have one: traffic that is yielded to, rows of parked vehicles.
 
 Adds one vehicle on the way that is told by a compass word, "oncoming" or "cross"; the planner keeps it clear of all
 others. Who is waited for ahead in the own lane is company. Knows the reading and the roads, no motion.
@@ -33,6 +33,10 @@ _TURNS = {**dict.fromkeys(("oncoming", "opposing", "opposite"), math.pi),
 """Ways by a word, from that of the one that yields: crossing traffic comes from the left, whose lanes are nearest."""
 
 
+_IN_A_ROW = 2
+"""Vehicles that are drawn of a row of parked ones."""
+
+
 class _Told(NamedTuple):
     """One that is yielded to: kind, the report's number if any, who yields, and the way in a word."""
 
@@ -65,6 +69,25 @@ def with_passers_by(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec) ->
         )  # fmt: skip
         return behavior.model_copy(update={"actors": (*behavior.actors, joined)})
     return behavior
+
+
+def with_parked_rows(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec) -> BehaviorSpec:
+    """The behavior with the vehicles that are told to be parked along the subject's road, on the sides of its way."""
+    subject = next(iter(behavior.actors), None)
+    ways = ways_of(spec)
+    own = next((w for w in ways if subject and (w.road.id, w.direction) == (subject.road, subject.direction)), None)
+    told = next((m for s in reading.sentences if (m := rule("company.parked_rows").search(s.text))), None)
+    if own is None or told is None or behavior.first_meeting is None:
+        return behavior
+    met = [w for w in ways if w.to_node == own.to_node and apart(w.end_rad, own.end_rad + math.pi) < _ASIDE_RAD]
+    against = next((w for w in (*met, *ways) if w in met or (w.road.id == own.road.id and w != own)), None)
+    sides = {"left": (against,), "right": (own,)}.get((told["hand"] or "").lower(), (own, against))
+    actors, taken = list(behavior.actors), taken_names(behavior.actors, reading)
+    for way in (way for way in sides for _ in range(_IN_A_ROW) if way and len(actors) < MOST):
+        taken.add(name := free_name(taken, "V"))
+        parked = Actor(id=name, kind="car", road=way.road.id, direction=way.direction, lane=1, maneuver="parked")
+        actors.append(parked)
+    return behavior.model_copy(update={"actors": tuple(actors)})
 
 
 def _told(behavior: BehaviorSpec, reading: Reading) -> Iterator[_Told]:

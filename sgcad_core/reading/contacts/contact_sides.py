@@ -175,6 +175,7 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
             and (inferred.maneuvers[me] not in ("stopped", "parked") or _passed_by(mine, yours, turn))
         )
         flank = flank or _beside(mine, yours, turn)
+        flank = flank or (crash.roster.counted and _brushes_by(inferred, pair, mine, yours, turn))
         areas[me] = mine.split("/")[1] if flank and mine else end_of(mine)  # type: ignore[assignment]
     if set(areas.values()) == {"back"} and not any(inferred.maneuvers[v] == "backing" for v in pair):
         areas = {v: _flank_of(zones[v]) or areas[v] for v in pair}
@@ -202,6 +203,14 @@ def _beside(mine: Zone | None, yours: Zone | None, turn: float) -> bool:
             (rear and end_of(yours) == "front") or (other == hand and ends == {"front", "back"})
         )
     return turn == 0 and hand is not None and other == OPPOSITE_HAND[hand] and end_of(mine) == end_of(yours)
+
+
+def _brushes_by(
+    inferred: CrashInferred, pair: tuple[str, str], mine: Zone | None, yours: Zone | None, turn: float
+) -> bool:
+    """Whether front corners of one hand touch as one drives past another one that stands and faces it."""
+    stands = any(_standing(inferred, v) for v in pair)
+    return stands and turn == 180 and mine == yours and end_of(mine) == "front" and _flank_of(mine) is not None
 
 
 def _flank_of(zone: Zone | None) -> Area | None:

@@ -194,6 +194,9 @@ def test_a_field_of_which_two_things_are_told_contradicts_itself() -> None:
     ("V1 was northbound. The front of V1 struck the left side of V2.", ["vehicles.V2.heading"]),
     ("V1 was northbound. The front of V1 struck the back of V2.", []),
     ("V1 was northbound. The front of V1 struck the left side of V2, which was parked.", []),
+    ("The subject vehicle is in the left lane. A van changes into the subject vehicle's lane.", []),
+    ("The subject vehicle is in the left lane. A van is at the corner and the subject brakes to avoid it.",
+     ["vehicles.V2.heading"]),
 ])  # fmt: skip
 def test_a_heading_that_nobody_tells_is_a_guess(text, guessed) -> None:
     assert [one.field for one in guesses(made(text))] == guessed

@@ -60,6 +60,17 @@ def test_one_that_still_rolls_does_not_stop():
     assert left.speed_mps[left.t_s > made.contact.t_s].min() > 5.0
 
 
+def test_one_that_brushes_another_one_stops_further_on_in_its_lane():
+    seen, made = driven("straight_wide", SIDESWIPE, *(
+        car("V1", "stopped", road="E", exit_road="W", lane=1),
+        car("V2", "straight", road="E", exit_road="W", lane=2),
+    ), leaves=False)  # fmt: skip
+    left = seen["V2"]
+    assert left.speed_mps[-1] < 0.1
+    assert left.speed_mps[left.t_s > made.contact.t_s + 0.5][0] > 3.0
+    assert left.heading_rad[-1] == pytest.approx(left.heading_rad[0], abs=0.01)
+
+
 def test_one_that_is_not_told_to_leave_stays():
     seen, _ = driven("four_leg", REAR_END, car("V1", "stopped"), car("V2", "straight"), leaves=False)
     assert seen["V2"].speed_mps[-1] < 0.1

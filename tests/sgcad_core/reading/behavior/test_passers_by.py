@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sgcad_core.reading.behavior.behavior import behavior_of_facts
-from sgcad_core.reading.behavior.passers_by import with_passers_by
+from sgcad_core.reading.behavior.passers_by import with_parked_rows, with_passers_by
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.reading import read
 from sgcad_core.roads.layout import road_spec
@@ -44,3 +44,18 @@ def test_the_other_one_of_the_crash_is_there_already() -> None:
         "southbound turned left and contacted the front of the van."
     )
     assert joined(text) == []
+
+
+@pytest.mark.parametrize(("words", "sides"), [
+    ("vehicles parked on both sides", ["own", "own", "against", "against"]),
+    ("parked cars along the right side", ["own", "own"]),
+    ("a parking lot on the right side", []),
+])  # fmt: skip
+def test_rows_of_parked_vehicles_stand_on_their_sides(words: str, sides: list[str]) -> None:
+    text = f"The AV was northbound on Elm Street, a street with {words}, and stopped. A van rear-ended the AV."
+    reading = read(text)
+    spec = road_spec(layout_of_facts(reading.roads))
+    behavior = behavior_of_facts(reading.crash, spec)
+    parked = [a for a in with_parked_rows(behavior, reading, spec).actors if a.maneuver == "parked"]
+    ways = {(behavior.actors[0].road, behavior.actors[0].direction): "own"}
+    assert [ways.get((a.road, a.direction), "against") for a in parked] == sides

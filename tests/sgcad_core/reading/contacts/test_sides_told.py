@@ -111,6 +111,14 @@ def test_corners_of_two_that_pass_each_other_touch_with_their_flanks() -> None:
     assert first_sides(text) == ("left", "left")
 
 
+def test_front_corners_touch_with_their_flanks_where_one_drives_past_one_that_stands() -> None:
+    text = (
+        "The AV was southbound and stopped to yield to an oncoming truck. As the truck was passing, the front left "
+        "corner of the truck made contact with the front left corner of the AV."
+    )
+    assert first_sides(text) == ("left", "left")
+
+
 def test_one_that_nearly_changes_into_the_lane_of_another_one_comes_beside_it() -> None:
     text = (
         "The subject driver is in the left lane when a car in the right lane starts to change into the subject "
