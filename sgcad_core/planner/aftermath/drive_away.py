@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -73,11 +73,23 @@ def drive_away(
         stops = name in brushed and its.slight and its.rest.empty and not its.leaves
         if not (its.leaves or stops) or name not in courses or track.hit is None:
             continue
-        way = next(_ways(scene, track, courses[name], stops=stops), None)
+        way = next(_ways(scene, track, _as_faced(track, courses[name]), stops=stops), None)
         if way is None and not stops:
             yield f"{name} stays at the scene, which it leaves as told: no way leads past the others"
         elif way is not None:
             track.poses = way
+
+
+def _as_faced(track: Track, course: Course) -> Course:
+    """The course in the direction in which the box faces: the other one of a vehicle that backed."""
+    pose = track.poses[track.hit or 0]
+    at = int(np.hypot(*(course.path.points - pose[:2]).T).argmin())
+    if math.cos(float(pose[2] - course.path.heading_rad[at])) > -math.cos(_ASKEW_RAD):
+        return course
+    return replace(
+        course, path=course.path.reversed(), left_edge_m=course.right_edge_m, right_edge_m=course.left_edge_m,
+        own_left_m=course.right_edge_m,
+    )  # fmt: skip
 
 
 def _ways(scene: Scene, track: Track, course: Course, *, stops: bool) -> Iterator[Floats]:
@@ -206,7 +218,7 @@ def _is_free(scene: Scene, track: Track, poses: Floats, start: _Start, near_m: f
     for other in scene.everybody.values():
         if other.actor != track.actor and not other.flat:
             gaps = gaps_where_near(after, track.size, other.poses[start.sample :], other.size, _CLEAR_M)
-            if (gaps < wanted).any():
+            if (gaps < np.where(wanted < 0.0, np.minimum(wanted, gaps[0] + _SUNK_M / 2), wanted)).any():
                 return False
     return True
 
