@@ -25,7 +25,7 @@ _SHOWN = 110
 """Characters of a sentence that an item quotes."""
 _ABOUT = {
     "lane": "a lane or a number of lanes", "side": "the sides of a contact", "roll": "a rollover",
-    "contact": "a contact", "motion": "what a vehicle did",
+    "contact": "a contact", "motion": "what a vehicle did", "evasion": "an evasion",
 }  # fmt: skip
 
 
@@ -75,6 +75,8 @@ def _told(sentence: Sentence) -> Iterator[str]:
         yield "contact"
     if sentence.role in ("approach", "avoidance") and _VEHICLE.search(sentence.text):
         yield "motion"
+    if rule("near_events.act").search(sentence.text):
+        yield "evasion"
 
 
 def _unread(reading: Reading, sentence: Sentence, kind: str) -> Item:
@@ -148,6 +150,15 @@ def _motion(reading: Reading, sentence: Sentence, read: _Read) -> bool:
     )  # fmt: skip
 
 
+def _evasion(reading: Reading, sentence: Sentence, read: _Read) -> bool:
+    """Of a near crash every sentence counts that tells an evasion of one of the two; others have it in the motions."""
+    first = next(iter(reading.crash.contacts), None)
+    who = _VEHICLE.search(reading.text_of(sentence))
+    if reading.crash.near_crash is None or first is None or (who and who[0] not in (first.striker, first.struck)):
+        return True
+    return read.has(sentence.start, "evasion", "maneuver", "near_crash.")
+
+
 def _is_retold(reading: Reading, text: str) -> bool:
     """Whether a sentence says no more than what was read elsewhere: a turn, a place that is left or entered, who is
     behind; or how one moved who is struck on foot."""
@@ -172,4 +183,5 @@ def _is_retold(reading: Reading, text: str) -> bool:
 
 _HEARD: dict[str, Callable[[Reading, Sentence, _Read], bool]] = {
     "lane": _lane, "side": _side, "roll": _roll, "contact": _contact, "motion": _motion,
+    "evasion": _evasion,
 }  # fmt: skip

@@ -139,6 +139,15 @@ def test_driving_out_of_the_lanes_that_nobody_tells_costs_the_verdict(x_m, lacki
     assert {one.reason for one in found} <= {"3.0 s on the wrong side of the road before its contact"}
 
 
+@pytest.mark.parametrize(("second", "unread"), [
+    ("They have to brake to gain more time to merge.", ["text.evasion"]),
+    ("A car behind them also brakes to avoid hitting them.", []),
+])  # fmt: skip
+def test_an_evasion_of_one_of_a_near_crash_that_was_not_read_costs_the_verdict(second, unread) -> None:
+    text = f"The subject driver is merging. A van beside them does not move over. {second}"
+    assert [one.field for one in unread_clauses(made(text)) if one.field == "text.evasion"] == unread
+
+
 @pytest.mark.parametrize(("text", "unread"), [
     ("V1 was northbound in lane 2 of a four-lane road. The front of V1 struck the back of V2.", set()),
     ("V1 was northbound. The front of V1 struck the back of V2. V1 then rolled over.", set()),
