@@ -41,7 +41,10 @@ _LOOSE = frozenset((
     "mattress", "cargo", "bag", "cart",
 ))  # fmt: skip
 """Pieces that a vehicle drives over, or pushes out of its way, without being stopped."""
-_FLAT = frozenset(("curb", "curbing", "median", "island", "ditch", "hole", "pothole", "swale", "ground"))
+_FLAT = frozenset((
+    "curb", "curbing", "median", "island", "ditch", "hole", "pothole", "swale", "ground",
+    "cover", "manhole", "drain", "grate", "bump", "hump", "plate",
+))  # fmt: skip
 """Things on or in the ground: a vehicle drives over them, and they stay."""
 _USUAL_M = (0.4, 0.4)
 _LONG_M = 1.5

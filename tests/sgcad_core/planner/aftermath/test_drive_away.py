@@ -71,6 +71,17 @@ def test_one_that_brushes_another_one_stops_further_on_in_its_lane():
     assert left.heading_rad[-1] == pytest.approx(left.heading_rad[0], abs=0.01)
 
 
+def test_one_that_grazes_an_oncoming_one_that_stands_does_so_at_a_small_angle_and_comes_back():
+    seen, made = driven("four_leg", Contact(striker="V2", struck="V1", striker_area="left", struck_area="left"), *(
+        car("V1", "stopped"), car("V2", "straight", road="N", exit_road="S"),
+    ), leaves=False)  # fmt: skip
+    left = seen["V2"]
+    at = int(np.searchsorted(left.t_s, made.contact.t_s))
+    assert abs(left.heading_rad[at] - left.heading_rad[0]) < np.radians(8.0)
+    assert abs(left.heading_rad[-1] - left.heading_rad[0]) < np.radians(12.0)
+    assert left.y_m[-1] < left.y_m[at] - 5.0
+
+
 def test_one_that_is_not_told_to_leave_stays():
     seen, _ = driven("four_leg", REAR_END, car("V1", "stopped"), car("V2", "straight"), leaves=False)
     assert seen["V2"].speed_mps[-1] < 0.1

@@ -59,3 +59,10 @@ def test_rows_of_parked_vehicles_stand_on_their_sides(words: str, sides: list[st
     parked = [a for a in with_parked_rows(behavior, reading, spec).actors if a.maneuver == "parked"]
     ways = {(behavior.actors[0].road, behavior.actors[0].direction): "own"}
     assert [ways.get((a.road, a.direction), "against") for a in parked] == sides
+
+
+@pytest.mark.parametrize(("thing", "flat"), [("manhole cover", True), ("speed bump", True), ("tree", False)])
+def test_what_lies_in_the_road_is_driven_over(thing: str, flat: bool) -> None:
+    reading = read(f"The AV was northbound on Elm Street and made contact with a {thing}.")
+    behavior = behavior_of_facts(reading.crash, road_spec(layout_of_facts(reading.roads)))
+    assert next(a for a in behavior.actors if a.id == "O1").flat is flat
