@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from sgcad_core.account.inputs import ExecutedCase, is_stated
 from sgcad_core.account.records import Item
-from sgcad_core.kinds import actor_kind
+from sgcad_core.kinds import actor_kind, is_vehicle_id
 from sgcad_core.reading.language import of_role
 from sgcad_core.roads.areas.roadside import roadsides
 
@@ -34,7 +34,7 @@ def _is_driven_over(made: ExecutedCase, field: str, word: str) -> bool:
     fact = made.told.get(field)
     telling = [s for s in made.reading.sentences if fact and s.start == fact.start]
     named = {name for sentence in telling for name in made.reading.named_in(sentence)}
-    ids = [name for name in made.tracks if name.startswith("V") and (name in named or not named)]
+    ids = [name for name in made.tracks if is_vehicle_id(name) and (name in named or not named)]
     vehicles = [(made.tracks[name].pose, made.sizes[name]) for name in ids]
     return any(strip.is_reached(pose, size) for strip in strips for pose, size in vehicles)
 

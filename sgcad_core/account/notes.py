@@ -16,7 +16,7 @@ from sgcad_core.record_base import Record
 from sgcad_core.records.facts import Fact
 
 NoteKind = Literal["reader", "limit", "finding", "held", "judge", "place", "plan"]
-_ID = re.compile(r"\b[VPBTOA]\d{1,2}\b")
+_ID = re.compile(r"\b[VNPBTOA]\d{1,2}\b")
 _WORDS = {
     "rest": "rest.",
     "lane": "lane",

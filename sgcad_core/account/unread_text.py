@@ -12,7 +12,7 @@ from itertools import combinations
 
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
-from sgcad_core.kinds import DRIVEWAY, JUNCTIONS, PARKING_LOT, ROUNDABOUT, actor_kind
+from sgcad_core.kinds import DRIVEWAY, JUNCTIONS, PARKING_LOT, ROUNDABOUT, actor_kind, is_vehicle_id
 from sgcad_core.reading.actors.people_objects import kind_of_word
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.text.normalise import NUMBERS, Sentence
@@ -95,7 +95,7 @@ def _numbers(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
         )
     for match in _COUNTED.finditer(sentence.text):
         count = NUMBERS.get(match["n"].lower()) or int(match["n"])
-        there = sum(name.startswith("V") for name in made.tracks)
+        there = sum(is_vehicle_id(name) for name in made.tracks)
         if count > there:
             text = f"{count} vehicles are told ({match[0]!r})"
             yield _lacks(sentence, "vehicles", str(count), text, f"the scenario has {there}")
@@ -121,7 +121,7 @@ def _called(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
 def _further(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     """Vehicles without a number, in reports that number the others, where the scenario has none beside these."""
     numbered = {v.id for v in made.reading.crash.vehicles}
-    if made.reading.crash.unnumbered or any(name.startswith("V") for name in made.tracks.keys() - numbered):
+    if made.reading.crash.unnumbered or any(is_vehicle_id(name) for name in made.tracks.keys() - numbered):
         return
     for match in _FURTHER.finditer(sentence.text):
         yield _undrawn(sentence, match[0])
@@ -130,7 +130,7 @@ def _further(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
 def _served(made: ExecutedCase, sentence: Sentence) -> Iterator[Item]:
     """Vehicles of services, and vehicles that others wait for or pass, that have no number and are not drawn."""
     numbered = {v.id for v in made.reading.crash.vehicles}
-    if made.reading.crash.unnumbered or any(name.startswith("V") for name in made.tracks.keys() - numbered):
+    if made.reading.crash.unnumbered or any(is_vehicle_id(name) for name in made.tracks.keys() - numbered):
         return
     kinds = {actor.type for actor in made.scenario.actors}
     for wording in (rule("account.served"), rule("account.passed")):

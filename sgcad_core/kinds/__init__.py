@@ -1,6 +1,15 @@
 """The closed kinds, one record each: actors, junctions, roads and maneuvers. See docs/kinds.md."""
 
-from sgcad_core.kinds.actors import ACTORS, ActorRecord, actor_kind, kind_of_letter, learned_actors, mass_kg
+from sgcad_core.kinds.actors import (
+    ACTORS,
+    UNNUMBERED,
+    ActorRecord,
+    actor_kind,
+    is_vehicle_id,
+    kind_of_letter,
+    learned_actors,
+    mass_kg,
+)
 from sgcad_core.kinds.junctions import (  # fmt: skip
     FOUR,
     FOUR_LEG,
@@ -48,6 +57,7 @@ __all__ = [
     "ROAD",
     "ROADS",
     "ROUNDABOUT",
+    "UNNUMBERED",
     "UNPAINTED",
     "UNSUPPORTED",
     "WORK_ZONE",
@@ -60,6 +70,7 @@ __all__ = [
     "T",
     "Unsupported",
     "actor_kind",
+    "is_vehicle_id",
     "junction_kind",
     "kind_of_letter",
     "learned_actors",

@@ -258,8 +258,18 @@ def actor_kind(kind: str) -> ActorRecord:
     return ACTORS[kind]
 
 
+UNNUMBERED = "N"
+"""First letter of a vehicle without a number, where the report numbers others: "V2" is the report's own vehicle 2."""
+
+
+def is_vehicle_id(name: str) -> bool:
+    """Whether an id is that of a vehicle, with a number in the report or without one."""
+    return name[:1] in ("V", UNNUMBERED)
+
+
 def kind_of_letter(letter: str) -> str:
     """The kind that an actor is unless more is said, by the letter of its id: the first that has it, else a thing."""
+    letter = "V" if letter == UNNUMBERED else letter
     return next((r.id for r in ACTORS.values() if r.letter == letter), next(r.id for r in ACTORS.values() if r.thing))
 
 

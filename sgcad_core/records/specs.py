@@ -28,7 +28,7 @@ from sgcad_core.records.words import LaneNumber
 Id = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,23}$")]
 _TRAINED_ID = {"pattern": "^[VPBTO][0-9]{1,2}$"}
 ActorId = Annotated[
-    str, StringConstraints(pattern=r"^[VPBTOA][0-9]{1,2}$"), Field(json_schema_extra={TRAINED: _TRAINED_ID})
+    str, StringConstraints(pattern=r"^[VNPBTOA][0-9]{1,2}$"), Field(json_schema_extra={TRAINED: _TRAINED_ID})
 ]
 NodeControl = Literal["none", "signal", "flashing", "stop", "all_way_stop", "yield"]
 Turn = Literal["left", "through", "right", "left_through", "through_right", "left_right", "any"]
@@ -184,7 +184,8 @@ class Actor(Spec):
     """A road user or object and its pre-crash motion."""
 
     id: ActorId = Field(
-        description="V<n> as the report numbers it, P person, B cyclist, A animal, T trailer, O object",
+        description="V<n> as the report numbers it, N vehicle without number, P person, B cyclist, A animal, "
+        "T trailer, O object",
         json_schema_extra={TRAINED: {**_TRAINED_ID, "description": _TRAINED_ACTOR}},
     )
     kind: ActorKind

@@ -212,4 +212,4 @@ def _pair(a: str, b: str) -> frozenset[str]:
 
 def _named(who: str) -> str:
     """The id of a vehicle, person or animal; "thing" for objects."""
-    return who if who[:1] in "VPBAT" and who[1:].isdigit() else "thing"
+    return who if who[:1] in "VNPBAT" and who[1:].isdigit() else "thing"

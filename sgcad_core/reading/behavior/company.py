@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from sgcad_core.kinds import actor_kind
+from sgcad_core.kinds import UNNUMBERED, actor_kind
 from sgcad_core.reading.actors.makes import kind_of
 from sgcad_core.reading.actors.people_objects import kind_of_word
 from sgcad_core.reading.actors.vehicles import MENTION
@@ -35,8 +35,8 @@ class _Told(NamedTuple):
     waits: str | None
     avoided: bool = False
     """Whether the vehicle goes round it, be it off the road."""
-    letter: str = "V"
-    """First letter of its id."""
+    letter: str = ""
+    """First letter of its id; empty for a vehicle."""
     drives: bool = False
     """Whether it drives ahead and slows; else it stands."""
 
@@ -55,7 +55,7 @@ def with_company(behavior: BehaviorSpec, reading: Reading) -> BehaviorSpec:
         leader = _leader(told, row)
         if leader is None or len(actors) >= MOST or told.name in {a.id for a in actors}:
             continue
-        name = told.name or free_name(taken, told.letter)
+        name = told.name or free_name(taken, told.letter or letter_of_vehicles(reading))
         taken.add(name)
         actors.append(_ahead(told, name, leader))
     return behavior.model_copy(update={"actors": tuple(actors)})
@@ -172,6 +172,11 @@ def vehicle_kind(words: str) -> ActorKind:
 def taken_names(actors: Iterable[Actor], reading: Reading) -> set[str]:
     """The ids of the actors and of all that the report numbers."""
     return {a.id for a in actors} | {name for s in reading.sentences for name in reading.named_in(s)}
+
+
+def letter_of_vehicles(reading: Reading) -> str:
+    """First letter of the ids of vehicles to which the report gives no number."""
+    return "V" if reading.crash.unnumbered else UNNUMBERED
 
 
 def free_name(taken: set[str], letter: str) -> str:

@@ -15,6 +15,7 @@ from sgcad_core.reading.behavior.company import (
     MOST,
     contact_starts,
     free_name,
+    letter_of_vehicles,
     named_before,
     taken_names,
     vehicle_kind,
@@ -62,7 +63,7 @@ def with_passers_by(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec) ->
             continue
         onward = min(exits(way, ways), key=lambda w: abs(turn_of(way, w)), default=None)
         straight = onward is not None and abs(turn_of(way, onward)) < _ASIDE_RAD
-        name = told.name or free_name(taken_names(behavior.actors, reading), "V")
+        name = told.name or free_name(taken_names(behavior.actors, reading), letter_of_vehicles(reading))
         joined = Actor(
             id=name, kind=vehicle_kind(told.kind), road=way.road.id,
             direction=way.direction, exit_road=onward.road.id if onward and straight else None, maneuver="straight",

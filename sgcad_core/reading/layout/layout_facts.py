@@ -27,6 +27,7 @@ from sgcad_core.reading.layout.layout_places import (
 )
 from sgcad_core.reading.layout.leg_parts import curve_of, kind_of, median_of, usual_limit
 from sgcad_core.reading.layout.legs_used import with_used_legs
+from sgcad_core.reading.layout.parted_roads import with_parted_roads
 from sgcad_core.reading.motion.motion_record import DRIVES
 from sgcad_core.reading.roads.carriageway import Carriageway, DirectionLanes, carriageway
 from sgcad_core.reading.roads.lanes import LaneFacts
@@ -62,12 +63,12 @@ def layout_of_facts(
 
     A driveway that a vehicle uses is a leg of the hub; beside a named junction driveways are left out.
     """
-    return _Builder(facts, defaults or Defaults()).layout(as_counted, laid)
+    return _Builder(with_parted_roads(facts), defaults or Defaults()).layout(as_counted, laid)
 
 
 def lane_notes(facts: RoadFacts) -> tuple[str, ...]:
     """Notes on lanes that the roads of a layout get for its vehicles, beside those that are told or usual."""
-    return _Builder(facts, Defaults()).added()
+    return _Builder(with_parted_roads(facts), Defaults()).added()
 
 
 @dataclass(frozen=True)
@@ -143,12 +144,11 @@ class _Builder:
         for v in along:
             if v.heading and v.origin not in DRIVES:
                 used[v.heading] = max(used.get(v.heading, 1), least_lanes(v, self.facts.crash))
-        default = 2 if road.kind == "freeway" or road.lanes.divided else self.facts.junction.circle_lanes or 1
-        lanes = _of_freeway(road.lanes) if road.kind == "freeway" else road.lanes
+        default = 2 if road.lanes.divided else self.facts.junction.circle_lanes or 1
         numbered = any(v.lane for v in self.facts.crash.vehicles if v in along or v.id in road.vehicles)
         default = max(default, self.defaults.lanes_each_way)
         both = len({v.heading for v in along if v.heading_stated and v.maneuver != "parked"}) > 1
-        return carriageway(lanes, axis, lead, used, default, numbered=numbered, against=both)
+        return carriageway(road.lanes, axis, lead, used, default, numbered=numbered, against=both)
 
     # -------------------------------------------------------------- legs
     def _plain(self, road: RoadFact) -> tuple[Leg, ...]:
@@ -291,9 +291,3 @@ def _turns(way: DirectionLanes, lanes_in: int) -> tuple[Turn, ...]:
     if not left:
         uses[-1] = "left_through"
     return tuple(uses)
-
-
-def _of_freeway(told: LaneFacts) -> LaneFacts:
-    """Its carriageways stand apart, told or not, and none has one lane: "two lanes" are those of one of them."""
-    whole = told.total == 2 and not told.one_way and not told.each_way and not told.toward
-    return replace(told, divided=True, each_way=2 if whole else told.each_way)

@@ -4,7 +4,7 @@ import pytest
 
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.formats.xml import parse_xml
-from sgcad_core.kinds import ACTORS, actor_kind, kind_of_letter, learned_actors, mass_kg
+from sgcad_core.kinds import ACTORS, actor_kind, is_vehicle_id, kind_of_letter, learned_actors, mass_kg
 from sgcad_core.reading.actors.makes import ANIMAL, BODY_WORDS, ROAD_USERS, kind_of
 from sgcad_core.reading.language import of_role
 from tests.sgcad_core.formats.xosc_samples import actor, trajectory
@@ -52,3 +52,8 @@ def test_letters_have_a_usual_kind() -> None:
 def test_a_kind_that_there_is_not_is_an_error() -> None:
     with pytest.raises(KeyError, match="hovercraft"):
         actor_kind("hovercraft")
+
+
+def test_a_vehicle_without_a_number_is_a_vehicle_like_others() -> None:
+    assert kind_of_letter("N") == kind_of_letter("V") == "car"
+    assert [is_vehicle_id(name) for name in ("V2", "N1", "P1", "O1", "")] == [True, True, False, False, False]

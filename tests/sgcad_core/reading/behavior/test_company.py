@@ -24,23 +24,23 @@ def joined(text):
 
 @pytest.mark.parametrize(("text", "expected"), [
     ("V1 was traveling north and slowed to a stop for a queue of traffic.",
-     [("V3", "car", "stopped"), ("V4", "car", "stopped")]),
-    ("V1 was traveling north and was stopped behind a school bus.", [("V3", "bus", "stopped")]),
-    ("V1 was traveling north and slowed for another vehicle.", [("V3", "car", "stopped")]),
+     [("N1", "car", "stopped"), ("N2", "car", "stopped")]),
+    ("V1 was traveling north and was stopped behind a school bus.", [("N1", "bus", "stopped")]),
+    ("V1 was traveling north and slowed for another vehicle.", [("N1", "car", "stopped")]),
     ("V1 was traveling north and stopped for a pedestrian.", [("P1", "pedestrian", "straight")]),
     ("V1 was northbound, stopped behind a school bus in the northbound lane of the same road.",
-     [("V3", "bus", "stopped")]),
+     [("N1", "bus", "stopped")]),
     ("V1 was traveling north and braked to avoid stopped traffic.",
-     [("V3", "car", "stopped"), ("V4", "car", "stopped")]),
+     [("N1", "car", "stopped"), ("N2", "car", "stopped")]),
     ("V1 was traveling north and swerved to avoid a deer.", [("A1", "pedestrian", "straight")]),
     ("V1 was traveling north. An animal ran into the road in front of V1.", [("A1", "pedestrian", "straight")]),
-    ("V1 was traveling north and steered right to avoid a stopped truck.", [("V3", "truck", "stopped")]),
+    ("V1 was traveling north and steered right to avoid a stopped truck.", [("N1", "truck", "stopped")]),
     ("V1 was traveling north and steered right to avoid an oncoming vehicle.", []),
     ("V1 was traveling north and slowed for a stack of stopped vehicles ahead.",
-     [("V3", "car", "stopped"), ("V4", "car", "stopped")]),
-    ("V1 was traveling north and braked for the traffic ahead.", [("V3", "car", "stopped"), ("V4", "car", "stopped")]),
+     [("N1", "car", "stopped"), ("N2", "car", "stopped")]),
+    ("V1 was traveling north and braked for the traffic ahead.", [("N1", "car", "stopped"), ("N2", "car", "stopped")]),
     ("V1 was northbound, stopped in traffic in the left lane.",
-     [("V3", "car", "stopped"), ("V4", "car", "stopped")]),
+     [("N1", "car", "stopped"), ("N2", "car", "stopped")]),
     ("V1 was traveling north and slowed.", []),
     ("V1 was traveling north and swerved to avoid stopped traffic.", []),
     ("V1 was traveling north past a queue of traffic and slowed.", []),
@@ -68,7 +68,7 @@ def test_they_stand_in_the_lane_of_the_one_that_waits():
 
 def test_the_first_of_a_row_waits_for_one_without_a_number():
     text = f"V3, V1 and V2 were northbound. V3 slowed for another vehicle. {BEHIND} V1 struck the rear of V3."
-    assert joined(text)[0] == [("V4", "car", "stopped")]
+    assert joined(text)[0] == [("N1", "car", "stopped")]
 
 
 def test_a_queue_of_numbered_vehicles_is_not_drawn_twice():
