@@ -31,6 +31,7 @@ _FAR_M = (0.5, 300.0)
 """Distances from a contact to a rest that are believed."""
 _MOST_QUARTERS = 24
 """Quarter turns; more is a misreading."""
+_OVERTURNED = "course_rest.attitude_overturned"
 
 
 @dataclass
@@ -211,8 +212,10 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
     rolled = _read_roll(one, segment, text)
     lies = (clause, text) if rolled else (clause,)
     told = ((wording, wording.search(part)) for part in lies if part for wording in of_role("attitude"))
-    for wording, lying in ((wording, lying) for wording, lying in told if lying):
-        one.add_rest("attitude", wording.yields["attitude"], Source(segment.number, lying[0], wording.id))
+    counted = "roll_quarters" in one.sources
+    for wording, lying in ((w, lying) for w, lying in told if lying and not (counted and w.id == _OVERTURNED)):
+        weak = one.sources.get("rest.attitude", Source(0)).rule == _OVERTURNED
+        one.add_rest("attitude", wording.yields["attitude"], Source(segment.number, lying[0], wording.id), anew=weak)
         break
     if clause is not None and not rule("course_rest.unknown").search(clause):
         _read_facing(one, segment, clause)
