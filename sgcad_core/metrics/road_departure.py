@@ -24,6 +24,8 @@ _ALONG = math.sin(math.radians(20.0))
 """Sine of the angle to its way below which a compass word tells no side of it."""
 _OFF: frozenset[Place] = frozenset({"off", "beside"})
 _ON: frozenset[Place] = frozenset({"lane", "center_lane"})
+_SOON_M = 5.0
+"""Way behind the last place on a lane at which the side of a departure is seen."""
 
 
 def hand_of(side: DepartureSide, heading_rad: float) -> Hand | None:
@@ -51,7 +53,9 @@ def left_road(graph: LaneGraph, poses: Floats, length_m: float) -> Hand | None:
         return None
     along = lane_heading(graph, poses[last])
     way = along if along is not None else float(poses[last, 2])
-    east, north = seen[:2] - poses[last, :2]
+    away = np.hypot(*(poses[last:, :2] - poses[last, :2]).T) >= _SOON_M
+    soon = poses[last + int(away.argmax())] if away.any() else seen  # farther on, a road that bends lies elsewhere
+    east, north = soon[:2] - poses[last, :2]
     return "left" if np.cos(way) * north - np.sin(way) * east > 0 else "right"
 
 

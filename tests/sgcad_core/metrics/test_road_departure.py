@@ -40,5 +40,20 @@ def test_a_front_beside_the_lanes_is_enough() -> None:
     assert left_road(GRAPH, poses, 0.5) is None
 
 
+def test_beside_a_bend_the_side_is_that_on_which_the_road_is_left() -> None:
+    spec = road_spec(RoadLayout(legs=tuple(
+        Leg.model_validate({"bearing": b, "lanes_in": 1, "lanes_out": 1, "curve": "right" if b == "S" else "left"})
+        for b in "SN")))  # fmt: skip
+    graph = parse_net(compile_network(plain_xml(spec), spec).net_xml or "")
+    middle = graph.edges["-N"].lanes[0].shape  # bends away to the right
+    start, (east, north) = middle[0], (middle[1] - middle[0]) / np.hypot(*(middle[1] - middle[0]))
+    along, across = np.linspace(0.0, 150.0, 200)[:, None], np.linspace(0.0, 1.0, 200)[:, None]
+    straight = start + along * (east, north)
+    back = straight + across**4 * 8.0 * np.array((north, -east))  # slides back, and stays outside the bend
+    for way in (straight, back):
+        poses = np.column_stack((way, np.full(200, np.arctan2(north, east))))
+        assert left_road(graph, poses, 4.7) == "left"
+
+
 def test_a_vehicle_that_never_was_on_a_lane_has_left_none() -> None:
     assert left_road(GRAPH, driven(20.0)[-3:], 4.7) is None
