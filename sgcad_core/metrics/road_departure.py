@@ -40,15 +40,18 @@ def hand_of(side: DepartureSide, heading_rad: float) -> Hand | None:
 
 
 def left_road(graph: LaneGraph, poses: Floats, length_m: float) -> Hand | None:
-    """The side on which a vehicle is off the lanes at the last of its (n, 3) poses, as seen along its last lane.
+    """The side on which a vehicle has left its lanes at the last of its (n, 3) poses, as seen along its last lane.
 
-    None while it is on them, or where it never was on a lane.
+    It is beside the lanes, or on those of the other direction behind a median. None while it is on its own, or where it
+    never was on a lane.
     """
     front = poses[-1:].copy()
     front[0, :2] += length_m / 2 * np.array([np.cos(front[0, 2]), np.sin(front[0, 2])])
     places = lane_steps(graph, poses).places
     seen = next((at for at in (poses[-1], front[0]) if lane_steps(graph, at[None]).places[0] in _OFF), None)
     last = next((k for k in range(len(places) - 1, -1, -1) if places[k] in _ON), None)
+    if seen is None and last is not None:  # over a median
+        seen = next((poses[k] for k in range(last, len(places)) if places[k] in _OFF), None)
     if seen is None or last is None:
         return None
     along = lane_heading(graph, poses[last])

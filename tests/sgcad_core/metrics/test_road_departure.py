@@ -40,6 +40,17 @@ def test_a_front_beside_the_lanes_is_enough() -> None:
     assert left_road(GRAPH, poses, 0.5) is None
 
 
+def test_one_that_crosses_a_median_has_left_its_road() -> None:
+    leg = {"lanes_in": 1, "lanes_out": 1, "median": "grass"}
+    spec = road_spec(RoadLayout(legs=tuple(Leg.model_validate({"bearing": b, **leg}) for b in "SN")))
+    graph = parse_net(compile_network(plain_xml(spec), spec).net_xml or "")
+    own, other = (float(graph.edges[edge].lanes[0].shape[0, 0]) for edge in ("S", "-S"))
+    x = own + (other - own) * np.clip((np.arange(60) - 20) / 30, 0, 1)
+    poses = np.column_stack((x, np.linspace(-100, -60, 60), np.full(60, np.pi / 2)))
+    assert left_road(graph, poses, 4.7) == "left"
+    assert left_road(GRAPH, driven(-1.6), 4.7) is None, "over a painted line"
+
+
 def test_beside_a_bend_the_side_is_that_on_which_the_road_is_left() -> None:
     spec = road_spec(RoadLayout(legs=tuple(
         Leg.model_validate({"bearing": b, "lanes_in": 1, "lanes_out": 1, "curve": "right" if b == "S" else "left"})
@@ -49,7 +60,7 @@ def test_beside_a_bend_the_side_is_that_on_which_the_road_is_left() -> None:
     start, (east, north) = middle[0], (middle[1] - middle[0]) / np.hypot(*(middle[1] - middle[0]))
     along, across = np.linspace(0.0, 150.0, 200)[:, None], np.linspace(0.0, 1.0, 200)[:, None]
     straight = start + along * (east, north)
-    back = straight + across**4 * 8.0 * np.array((north, -east))  # slides back, and stays outside the bend
+    back = straight + across**4 * 20.0 * np.array((north, -east))  # slides back, and stays outside the bend
     for way in (straight, back):
         poses = np.column_stack((way, np.full(200, np.arctan2(north, east))))
         assert left_road(graph, poses, 4.7) == "left"
