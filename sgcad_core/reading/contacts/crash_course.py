@@ -234,10 +234,10 @@ def _read_roll(one: _CourseReader, segment: Segment, text: str, *, early: bool =
     """Whether it rolled over, how far, with which side leading; `early`, before any contact, "rolled over" alone may
     tell of a line that it crossed."""
     rolled, m = rule("course_rest.rolled").search(text), rule("course_rest.quarters").search(text)
-    if not rolled or (early and not m and "turn" not in rolled[0].lower()):
+    if not rolled or (early and not m and rule("course_rest.over_a_line").match(rolled[0])):
         return False
     one.add("rolls", True, Source(segment.number, rolled[0], "course_rest.rolled"))
-    if m and 0 < (count := number(m["count"])) <= _MOST_QUARTERS:
+    if m and 0 < (count := number(next(filter(None, m.groups())))) <= _MOST_QUARTERS:
         one.add("roll_quarters", count, Source(segment.number, m[0], "course_rest.quarters"))
     if m := rule("course_rest.rolls_to").search(text):
         hand: Hand = "left" if next(filter(None, m.groups())).lower() == "left" else "right"
