@@ -31,6 +31,8 @@ _STEERS_PER_M = (0.03, 0.06, 0.1)
 """Bends of the ways on which a vehicle is led towards the stated sides of a further contact."""
 _SOON, _GOES_ON_M = 4, 5.0
 """Steps after which a vehicle that goes on still has that way before it."""
+_ON_LINE_M, _LINE_STEPS, _STRIKES_MPS = 1.3, 2, 2.6
+"""Distance of a center that is on a line, steps of the ways between two looks, and least speed of a blow."""
 _OFF_ROAD_M, _ON_ROAD = 1.0, 0.1
 """Distance from the road, and the cost of ending nearer."""
 
@@ -54,6 +56,23 @@ def runs_on(scene: Scene, name: str, surface: RoadSurface, after: int) -> Iterat
         way_m = np.hypot(*(found.ways[-1] - found.ways[_SOON])[:, :2].T) if len(found.ways) > _SOON else np.zeros(0)
         off = surface.off(found.ways[-1][:, :2])[0] > _OFF_ROAD_M
         yield from found.best(way_m > _GOES_ON_M, np.where(off, 0.0, _ON_ROAD)) if len(way_m) else ()
+
+
+def runs_to_line(scene: Scene, name: str, line: Floats, after: int) -> Iterator[RunOut]:
+    """The run-outs of a struck vehicle behind a sample that lead it onto a line, (k, 2) points, while it still moves:
+    the least odd one of each sort, by steering, locked wheels and turning."""
+    if len(line) == 0 or (found := run_outs(scene, name, after)) is None or len(found.ways) < 2:
+        return
+    ways = found.ways[::_LINE_STEPS, :, :2]
+    near = np.hypot(*(ways[:, :, None] - line).transpose(3, 0, 1, 2)).min(axis=2)[1:] < _ON_LINE_M
+    mps = np.hypot(*np.diff(ways, axis=0).transpose(2, 0, 1)) / (_LINE_STEPS * _COARSE * STEP_S)
+    met = near & (mps > _STRIKES_MPS)
+    sorts = set()
+    for run in found.best(met.any(axis=0), _PER_S * met.argmax(axis=0) * _LINE_STEPS * _COARSE * STEP_S):
+        sort = (np.sign(run.bend_per_m), run.slides, np.sign(run.yaws_radps2))
+        if sort not in sorts:
+            sorts.add(sort)
+            yield run
 
 
 def runs_aside(scene: Scene, name: str, after: int) -> Iterator[RunOut]:

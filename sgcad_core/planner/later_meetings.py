@@ -23,8 +23,8 @@ from sgcad_core.planner.encounter.meeting_place import place_near
 from sgcad_core.planner.encounter.motion_options import Option, forced, options
 from sgcad_core.planner.encounter.pacing_choices import pacings
 from sgcad_core.planner.encounter.pairing import Encounter
-from sgcad_core.planner.later_courses import runs_aside, runs_into, with_run
-from sgcad_core.planner.later_places import ToBeStruck
+from sgcad_core.planner.later_courses import runs_aside, runs_into, runs_to_line, with_run
+from sgcad_core.planner.later_places import ToBeStruck, is_astray, lane_line
 from sgcad_core.planner.motion import STEP_S, Motion
 from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.records.specs import Area, Contact
@@ -47,6 +47,8 @@ _BODIES = 60
 many take long."""
 _ACROSS, _ALONG_RAD = 2, math.radians(50.0)
 """Weight of a vehicle that stands across its road, at more than this angle: as much as both sides of a contact."""
+_ASTRAY = 2
+"""Weight of a vehicle that is struck beside its lane, untold."""
 _UNTOLD = 3
 """Weight of an untold contact: more than of both sides of a told one."""
 _OUTSIDE, _STARTS_M = 20.0, 4.0
@@ -98,6 +100,7 @@ class LaterMeetings:
             self._place(tracks)
             missed = _UNTOLD * self.order.untold + sides_missed(self.scene, contact)
             missed += _ACROSS * sum(map(self._stands_across, tracks))
+            missed += _ASTRAY * sum(is_astray(self.role_of(one.actor), one, self.surface) for one in tracks)
             if self.order.holds(pair_of(contact)) and (best is None or missed < best[0]):
                 best = missed, tracks
             for track in tracks:
@@ -132,7 +135,7 @@ class LaterMeetings:
         role = self.role_of(new)
         least = self._best_of(contact, ((track,) for track in self._tracks(role, partner, sides, more=more)))
         best, place = scene.runs, scene.tracks.pop(new, None)
-        steers = runs_aside(scene, partner, self.order.after) if self._may_steer(least, sides) else iter(())
+        steers = self._steers(role, partner, sides, least)
         for run in islice(steers, _STEERS):
             if not self._goes_on(_STEER_COSTS):
                 break
@@ -150,10 +153,13 @@ class LaterMeetings:
         self._place((place,) if place else ())
         return place is not None
 
-    @staticmethod
-    def _may_steer(missed: float, sides: Sides) -> bool:
-        """Whether the search goes on with a partner that steers; not where two meet along one line."""
-        return missed > 0 and set(sides) != {"front", "back"}
+    def _steers(self, role: Role, partner: str, sides: Sides, missed: float) -> Iterator[RunOut]:
+        """Ways of a partner to steer: into the lane of a new actor that else is met beside it, then to other sides; not
+        where two meet along one line."""
+        if missed >= _ASTRAY:
+            yield from islice(runs_to_line(self.scene, partner, lane_line(role), self.order.after), _STEERS - 1)
+        if missed > 0 and set(sides) != {"front", "back"}:
+            yield from runs_aside(self.scene, partner, self.order.after)
 
     def _tracks(
         self, role: Role, partner: str, sides: Sides, *, more: bool, wants: Sequence[Sides | None] | None = None

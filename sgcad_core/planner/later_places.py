@@ -14,9 +14,10 @@ import numpy as np
 
 from sgcad_core.geometry.plane import SIDES, Floats, gaps_where_near
 from sgcad_core.planner.actor_plan import Role, facing
-from sgcad_core.planner.encounter.meeting_place import place_near
+from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, place_near, stop_m
+from sgcad_core.planner.lines.departures import DEPARTURES
 from sgcad_core.planner.motion import STEP_S
-from sgcad_core.planner.scene import Scene
+from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.records.specs import Area
 from sgcad_core.roads.surface import RoadSurface
 
@@ -37,6 +38,11 @@ _AGAINST, _OTHER_SIDE = 2.5, 1.5
 """Ranks of a vehicle that waits against the direction of its lane, and of one that waits in it but is met with another
 side than told."""
 _OFF_ROAD_M = 0.3
+_LINE_M, _LINE_STEP_M = 60.0, 2.0
+"""Length of the line on which a vehicle may be struck, each way from its usual place, and between its points."""
+_BESIDE_M = 1.5
+"""Distance from the middle of its lane from which on a vehicle is beside it."""
+_OUT_OF_LANES = ACROSS_LANES | DEPARTURES.keys() | {"crossing_centerline", "parked", "backing", "u_turn"}
 _IN_JUNCTION = 0.8
 """Rank of one that waits in a junction: drivers wait before it."""
 
@@ -125,6 +131,29 @@ class ToBeStruck:
             if last and float(gaps_where_near(there, self.role.size, track.poses[:last], track.size).min()) <= 0.0:
                 return False
         return True
+
+
+def lane_line(role: Role) -> Floats:
+    """(n, 2) points of the line of a vehicle on which it may be struck: of one that waits, before its junction."""
+    course = role.course
+    entry_m = next((p.entry_m for p in course.passages if p.is_junction and p.entry_m > course.start_m), course.end_m)
+    end_m = stop_m(entry_m, role.size[0]) if role.actor.maneuver == "stopped" else course.end_m
+    here_m = min(role.place.station_m, end_m)
+    stations = np.arange(max(course.start_m, here_m - _LINE_M), min(end_m, here_m + _LINE_M), _LINE_STEP_M)
+    return course.path.poses(stations)[:, :2]
+
+
+def is_astray(role: Role, track: Track, surface: RoadSurface) -> bool:
+    """Whether a vehicle is beside its lane untold as it is struck: led out of it, or waiting where drivers do not."""
+    told, actor = role.told, role.actor
+    if not actor.record.drives or actor.record.laneless or actor.maneuver in _OUT_OF_LANES:
+        return False
+    if told.departs or told.steers or told.lost_control or told.moves:
+        return False
+    pose = track.poses[max((track.hit or 1) - 1, 0)]
+    aside_m = abs(place_near(role.course, pose).aside_m)
+    waits = role.actor.maneuver == "stopped" and bool(not_waiting(surface, pose[None])[0])
+    return waits or aside_m > _BESIDE_M
 
 
 def not_waiting(surface: RoadSurface, poses: Floats) -> Floats:
