@@ -113,14 +113,15 @@ def _curved(road: CompiledRoad) -> bool:
 
 
 def _lane_kind(made: ExecutedCase, here: list[CompiledRoad], name: str, value: Value) -> Comparison | None:
-    """One-way, center turn lane, turn lanes, median."""
-    if name == "one_way":
-        one = any(not d.forward or not d.backward for d in here)
-        both = any(d.forward and d.backward for d in here)
-        return Comparison(one if value else both or len(here) > 1, None, "it is drawn the other way")
+    """One-way, center turn lane, turn lanes, median; each carriageway of a divided road is one-way."""
     spec = made.network.spec
     ids = {d.id for d in here}
     roads = [road for road in spec.roads if road.id in ids] if spec else []
+    if name == "one_way":
+        one = any(not d.forward or not d.backward for d in here)
+        one |= any(r.median not in ("none", "painted") for r in roads)
+        both = any(d.forward and d.backward for d in here)
+        return Comparison(one if value else both or len(here) > 1, None, "it is drawn the other way")
     if not roads:
         return None
     if name == "center_turn_lane":

@@ -13,6 +13,9 @@ from sgcad_core.reading.language import rule
 from sgcad_core.reading.roads.lanes import LaneFacts
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
 
+_PARTS = ("barrier", "raised", "grass")
+"""Medians that have a carriageway on either side."""
+
 
 def with_parted_roads(facts: RoadFacts) -> RoadFacts:
     """The facts with the divide that freeways, highways and roads with a struck barrier let one expect."""
@@ -21,6 +24,8 @@ def with_parted_roads(facts: RoadFacts) -> RoadFacts:
 
 def _lanes(facts: RoadFacts, road: RoadFact) -> LaneFacts:
     told = road.lanes
+    if told.one_way and (told.divided or told.median in _PARTS) and facts.junction.kind in ("none", RAMP):
+        return _one_of_two(told)
     if road.kind != "freeway" and not _expected(facts, road):
         return told
     barrier = told.median is None and road.kind != "freeway" and _strikes_barrier(facts.crash)
@@ -28,6 +33,13 @@ def _lanes(facts: RoadFacts, road: RoadFact) -> LaneFacts:
     return replace(
         told, divided=True, each_way=2 if whole else told.each_way, median="barrier" if barrier else told.median
     )
+
+
+def _one_of_two(told: LaneFacts) -> LaneFacts:
+    """The lanes of a "one-way road with a median": of the two carriageways the report tells that of its vehicles."""
+    toward = told.toward.get(told.one_way_toward or "") or max(told.toward.values(), default=0)
+    count = toward or told.total or told.each_way
+    return replace(told, one_way=None, one_way_toward=None, divided=True, total=None, each_way=count or None)
 
 
 def _expected(facts: RoadFacts, road: RoadFact) -> bool:

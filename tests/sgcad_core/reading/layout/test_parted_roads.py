@@ -26,6 +26,17 @@ def test_the_carriageways_stand_apart(text: str, median: str) -> None:
     assert approach(text).lanes_in >= 2
 
 
+@pytest.mark.parametrize(("text", "lanes"), [
+    ("V1 and V2 were southbound on a three-lane, one-way road with a positive median barrier.", (3, 3)),
+    ("V1 and V2 were southbound on a two-lane one-way road divided by a grass median.", (2, 2)),
+    ("V1 and V2 were southbound on a three-lane, one-way road.", (3, 0)),
+])  # fmt: skip
+def test_of_a_one_way_road_with_a_median_the_other_carriageway_is_drawn_too(text: str, lanes: tuple[int, int]) -> None:
+    leg = approach(f"{text} The front of V1 struck the back of V2.")
+    assert (leg.lanes_in, leg.lanes_out) == lanes
+    assert (leg.median != "none") == (lanes[1] > 0)
+
+
 @pytest.mark.parametrize("text", [
     "V1 was traveling south on a street. The front of V1 struck the back of V2, which also headed south.",
     "V1 was southbound on a two-lane highway. The front of V1 struck the back of V2, which also headed south.",
