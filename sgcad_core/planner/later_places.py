@@ -40,9 +40,9 @@ side than told."""
 _OFF_ROAD_M = 0.3
 _LINE_M, _LINE_STEP_M = 60.0, 2.0
 """Length of the line on which a vehicle may be struck, each way from its usual place, and between its points."""
-_BESIDE_M = 1.5
-"""Distance from the middle of its lane from which on a vehicle is beside it."""
-_OUT_OF_LANES = ACROSS_LANES | DEPARTURES.keys() | {"crossing_centerline", "parked", "backing", "u_turn"}
+_BESIDE_M, _PARKED_M = 1.5, 8.0
+"""Distance from the middle of its lane from which on a vehicle is beside it, and is not parked along its road."""
+_OUT_OF_LANES = ACROSS_LANES | DEPARTURES.keys() | {"crossing_centerline", "backing", "u_turn"}
 _IN_JUNCTION = 0.8
 """Rank of one that waits in a junction: drivers wait before it."""
 
@@ -134,13 +134,15 @@ class ToBeStruck:
 
 
 def lane_line(role: Role) -> Floats:
-    """(n, 2) points of the line of a vehicle on which it may be struck: of one that waits, before its junction."""
-    course = role.course
+    """(n, 2) points of the line of a vehicle on which it may be struck: of one that waits, before its junction; of one
+    that is parked, beside its lane."""
+    course, parked = role.course, role.actor.maneuver == "parked"
     entry_m = next((p.entry_m for p in course.passages if p.is_junction and p.entry_m > course.start_m), course.end_m)
     end_m = stop_m(entry_m, role.size[0]) if role.actor.maneuver == "stopped" else course.end_m
     here_m = min(role.place.station_m, end_m)
     stations = np.arange(max(course.start_m, here_m - _LINE_M), min(end_m, here_m + _LINE_M), _LINE_STEP_M)
-    return course.path.poses(stations)[:, :2]
+    line = course.path.moved(-course.beside_m.get("parking", course.lane_width_m)) if parked else course.path
+    return line.poses(stations)[:, :2]
 
 
 def is_astray(role: Role, track: Track, surface: RoadSurface) -> bool:
@@ -152,7 +154,9 @@ def is_astray(role: Role, track: Track, surface: RoadSurface) -> bool:
         return False
     pose = track.poses[max((track.hit or 1) - 1, 0)]
     aside_m = abs(place_near(role.course, pose).aside_m)
-    waits = role.actor.maneuver == "stopped" and bool(not_waiting(surface, pose[None])[0])
+    if actor.maneuver == "parked":
+        return aside_m > _PARKED_M and not role.course.stalls
+    waits = actor.maneuver == "stopped" and bool(not_waiting(surface, pose[None])[0])
     return waits or aside_m > _BESIDE_M
 
 
