@@ -6,7 +6,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.aftermath.struck_objects import standing_track
-from sgcad_core.planner.later_courses import run_outs, runs_into, runs_on, with_run
+from sgcad_core.planner.later_courses import run_outs, runs_into, runs_on, runs_to_line, with_run
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.specs import Actor
 from sgcad_core.roads.surface import road_surface
@@ -41,6 +41,21 @@ def test_a_run_out_leads_a_struck_vehicle_into_another_one() -> None:
         if frozenset(("V1", "V3")) in touching(made):
             return
     raise AssertionError("no run-out leads there")
+
+
+def test_a_run_out_leads_a_struck_vehicle_onto_a_line_while_it_moves() -> None:
+    made = scene()
+    beside = np.column_stack((np.full(40, -3.0), np.linspace(0.0, 40.0, 40)))
+    runs = list(runs_to_line(made, "V1", beside, _CONTACT))
+    assert runs
+    made.runs = with_run(made, "V1", runs[0])
+    made.settle()
+    poses = made.tracks["V1"].poses[_CONTACT:]
+    mps = np.hypot(*np.diff(poses[:, :2], axis=0).T) / 0.05
+    near = np.abs(poses[1:, 0] + 3.0) < 1.5
+    assert (near & (mps > 2.0)).any()
+    assert list(runs_to_line(made, "V1", beside + np.array([60.0, 0.0]), _CONTACT)) == []
+    assert list(runs_to_line(made, "V1", np.zeros((0, 2)), _CONTACT)) == []
 
 
 def test_what_was_never_struck_has_no_run_out() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,9 +11,10 @@ import pytest
 from sgcad_core.planner.actor_plan import Role
 from sgcad_core.planner.aftermath.struck_objects import standing_track
 from sgcad_core.planner.encounter.meeting_place import Place
-from sgcad_core.planner.later_places import ToBeStruck, not_waiting
+from sgcad_core.planner.later_places import ToBeStruck, is_astray, lane_line, not_waiting
 from sgcad_core.planner.lines.maneuver_course import course_of
-from sgcad_core.planner.scene import Scene
+from sgcad_core.planner.scene import Scene, Track
+from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Actor, Area, size_m
 from sgcad_core.roads.surface import road_surface
 from tests.sgcad_core.planner.crash_scenes import network
@@ -61,6 +63,41 @@ def test_a_partner_that_stands_strikes_nobody() -> None:
 
 def test_a_gentle_push_is_enough_where_there_is_no_more() -> None:
     assert list(search(("front", "back"), mps=1.0).poses(45))
+
+
+def at(maneuver: str, pose: tuple[float, float, float]) -> tuple[Role, Track]:
+    actor = Actor.model_validate({"id": "V3", "kind": "car", "road": "S", "direction": "forward", "maneuver": maneuver})
+    course = course_of(network("four_leg"), actor, 3.0)
+    role = Role(actor, course, size_m(actor), Place(course.start_m + 225.0, 0.0, 0.0, 0.0))
+    return role, standing_track(Scene(200, 40), actor, np.array(pose))
+
+
+@pytest.mark.parametrize(("maneuver", "pose", "astray"), [
+    ("stopped", (1.8, -40.0, math.pi / 2), False),
+    ("stopped", (1.8, 0.0, math.pi / 2), True),
+    ("stopped", (12.0, -40.0, math.pi / 2), True),
+    ("parked", (4.5, -40.0, math.pi / 2), False),
+    ("parked", (15.0, -40.0, math.pi / 2), True),
+    ("straight", (1.8, 0.0, math.pi / 2), False),
+    ("straight", (5.0, -40.0, math.pi / 2), True),
+    ("lane_change_left", (-1.8, -40.0, math.pi / 2), False),
+])  # fmt: skip
+def test_one_that_is_struck_beside_its_lane_is_astray(
+    maneuver: str, pose: tuple[float, float, float], astray: bool
+) -> None:
+    role, track = at(maneuver, pose)
+    assert is_astray(role, track, road_surface(network("four_leg"))) == astray
+
+
+def test_one_that_steers_as_told_is_not_astray() -> None:
+    role, track = at("straight", (5.0, -40.0, math.pi / 2))
+    assert not is_astray(replace(role, told=CourseTold(steers="right")), track, road_surface(network("four_leg")))
+
+
+def test_the_line_of_one_that_waits_ends_before_the_junction() -> None:
+    waits, drives, parked = (lane_line(at(m, (1.8, -40.0, math.pi / 2))[0]) for m in ("stopped", "straight", "parked"))
+    assert waits[:, 1].max() < -5.0 < drives[:, 1].max()
+    assert parked[0, 0] > drives[0, 0] + 2.0
 
 
 def test_drivers_wait_before_a_junction_not_in_it_nor_beside_the_road() -> None:
