@@ -128,7 +128,7 @@ def guesses(made: ExecutedCase) -> Iterator[Item]:
         vehicle, other = crash.vehicle(name), crash.vehicle(first.struck if name == first.striker else first.striker)
         if vehicle is None or vehicle.heading_stated or vehicle.maneuver == "parked" or _backs_out(made, vehicle):
             continue
-        if _is_base(made, vehicle) or (other and _changes_lanes(vehicle, other)):
+        if _is_base(made, vehicle) or (other and _changes_lanes(vehicle, other)) or _on_one_way(made, name):
             continue
         if not _told_beside(made, name) and not _from_behind(first.striker_area, first.struck_area):
             yield Item(
@@ -159,6 +159,11 @@ def _told_beside(made: ExecutedCase, name: str) -> bool:
     """Whether words such as "behind V2" or "the opposite direction" tell the heading against another vehicle's."""
     fact = made.told.get(f"vehicles.{name}.heading")
     return fact is not None and fact.start is not None
+
+
+def _on_one_way(made: ExecutedCase, name: str) -> bool:
+    """Whether it is told to be on a one-way road, which has one direction."""
+    return any(name in road.vehicles and road.lanes.one_way for road in made.reading.roads.roads)
 
 
 def _from_behind(striker: str, struck: str) -> bool:

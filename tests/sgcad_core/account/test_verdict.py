@@ -198,6 +198,12 @@ def test_a_field_of_which_two_things_are_told_contradicts_itself() -> None:
     assert not [*contradictions(made("V1 was traveling north. V1 struck V2, which was parked."))]
 
 
+TURNS = (
+    "V1 was northbound in lane two of a {} road. V2 was traveling in lane one of the same road. V1 turned right and the "
+    "front of V2 struck the right side of V1."
+)
+
+
 @pytest.mark.parametrize(("text", "guessed"), [
     ("V1 was northbound. V2 was eastbound. The front of V1 struck the left side of V2.", []),
     ("V1 was northbound. The front of V1 struck the left side of V2.", ["vehicles.V2.heading"]),
@@ -206,6 +212,8 @@ def test_a_field_of_which_two_things_are_told_contradicts_itself() -> None:
     ("The subject vehicle is in the left lane. A van changes into the subject vehicle's lane.", []),
     ("The subject vehicle is in the left lane. A van is at the corner and the subject brakes to avoid it.",
      ["vehicles.V2.heading"]),
+    (TURNS.format("two-lane"), ["vehicles.V2.heading"]),
+    (TURNS.format("one-way"), []),
 ])  # fmt: skip
 def test_a_heading_that_nobody_tells_is_a_guess(text, guessed) -> None:
     assert [one.field for one in guesses(made(text))] == guessed
