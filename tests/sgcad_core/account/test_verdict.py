@@ -199,8 +199,8 @@ def test_a_field_of_which_two_things_are_told_contradicts_itself() -> None:
 
 
 TURNS = (
-    "V1 was northbound in lane two of a {} road. V2 was traveling in lane one of the same road. V1 turned right and the "
-    "front of V2 struck the right side of V1."
+    "V1 was northbound in lane two of a {} road. V2 was traveling in lane one of the same road. V1 turned right and "
+    "the front of V2 struck the right side of V1."
 )
 
 
