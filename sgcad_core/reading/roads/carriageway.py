@@ -176,7 +176,8 @@ def _of_one_carriageway(facts: LaneFacts, used: int, numbered: bool) -> bool:
     them would not have, and of a highway (seven of eight), but of four lanes without a numbered one. Of a divided one:
     of two or three lanes, of an odd total, and in a lane beyond the half always; an even total with a numbered lane or
     of a highway, unless the road is told to be two-way (then four of five are those of both halves). Without a numbered
-    lane a "four-lane divided highway" has two lanes each way, as people say it; of 18 coded ones 10 meant four.
+    lane a "four-lane divided highway" has two lanes each way, as people say it; of 18 coded ones 10 meant four. Seven
+    lanes are those of both halves (31 of 48).
     """
     total = facts.total or 0
     told = facts.each_way or facts.toward or facts.turns or facts.center_turn_lane
@@ -186,5 +187,7 @@ def _of_one_carriageway(facts: LaneFacts, used: int, numbered: bool) -> bool:
     beyond = used > (total + 1) // 2
     if facts.divided is None:
         return facts.one_way is None and (beyond or (facts.highway and (numbered or total != _TWO_EACH)))
+    if total == MOST and not beyond:
+        return False
     of_half = total <= _FEW or total % 2 == 1 or beyond
     return of_half or (facts.one_way is not False and (numbered or (facts.highway and total != _TWO_EACH)))

@@ -29,6 +29,8 @@ def _lanes(text: str) -> set[tuple[int, int]]:
         ("V1 was traveling east on a four-lane, two-way highway.", 2),
         ("V1 was traveling southeast on an east/west road, divided by a barrier, in lane 1 (of four lanes).", 4),
         ("V1 was traveling east in lane two of a six-lane roadway divided by a grass median.", 6),
+        ("V1 was traveling east in lane two of a seven-lane roadway divided by a raised median.", 4),
+        ("V1 was traveling east in lane six of a seven-lane roadway divided by a raised median.", 7),
         ("V1 was traveling east in lane one of a two-way, four-lane roadway divided by a grass median.", 2),
         ("V1 was traveling east in lane one of a four-lane, non-physically divided roadway.", 2),
         ("V1 was traveling east in lane one of a two-lane, non-physically divided roadway.", 1),
