@@ -6,7 +6,7 @@ it says (relation words, critical events, the sides that touched) and marked as 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.kinds import CHANGES, actor_kind
@@ -107,15 +107,25 @@ class CrashFacts:
 
     @property
     def driven(self) -> Courses:
-        """The courses as they are planned: with the start from rest and the stop of the vehicles that are read so."""
+        """The courses as they are planned: with the start from rest and the stop of the vehicles that are read so, and
+        the corners that touch first."""
+        corners = dict(self._corners())
         told = {
             v.id: replace(
                 self.courses.get(v.id, CourseTold()), from_rest=v.from_stop, straddles=v.straddles,
-                comes=v.comes if v.maneuver == "stopped" else None, slight=self.slight,
+                comes=v.comes if v.maneuver == "stopped" else None, slight=self.slight, corner=corners.get(v.id),
             )
-            for v in self.vehicles if v.from_stop or v.straddles or v.comes or self.slight
+            for v in self.vehicles if v.from_stop or v.straddles or v.comes or self.slight or v.id in corners
         }  # fmt: skip
         return {**self.courses, **told, **self._departing(told)}
+
+    def _corners(self) -> Iterator[tuple[str, tuple[Area, Area]]]:
+        """The vehicles of the first contact of which a corner touches, with its end and its flank."""
+        for contact in self.contacts[:1]:
+            for name, may in ((contact.striker, contact.striker_may), (contact.struck, contact.struck_may)):
+                ends, flanks = [a for a in may if a in ("front", "back")], [a for a in may if a in ("left", "right")]
+                if len(ends) == len(flanks) == 1:
+                    yield name, (ends[0], flanks[0])
 
     def _departing(self, courses: Courses) -> Courses:
         """The courses of vehicles whose departure only the thing beside the road implies that they strike first."""

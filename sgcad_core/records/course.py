@@ -87,6 +87,8 @@ class CourseTold:
     """How it comes to the stop at which it stands at its first contact; None: it is only told to stand."""
     slight: bool = False
     """Whether all that is told of the contact speaks of a slight one."""
+    corner: tuple[Area, Area] | None = None
+    """The end and the flank of the corner at which it touches first: it does so at that part of either."""
     inside: bool = False
     """Drives into a junction before its first contact."""
     brakes: bool = False

@@ -25,6 +25,8 @@ DEPTH_M = 0.016
 consequences of the touch begin after that sample."""
 _SPIN_COST, _GLANCE_COST, _CLEAR_LEVER_M = 0.4, 0.15, 0.6
 """Lever at which an impact in the stated sense of rotation costs nothing, and in the opposite sense the full cost."""
+_PART_COST, _OUTER = 0.6, 0.5
+"""Cost of a contact at the other half of a side than told, and the share of half the side from which on it is there."""
 _SECANTS = 6
 """Iterations; the time of the overlap is then known to some microseconds."""
 _MOST_SHIFTS = 64
@@ -74,11 +76,12 @@ def find_meeting(
     spins: tuple[float, float] = (0.0, 0.0),
     *,
     glances: bool = False,
+    parts: tuple[Area | None, Area | None] = (None, None),
 ) -> Meeting | None:
     """The best contact of two motions on the wanted sides (any sides where None), or None.
 
     `spins`: stated rotation of each after the contact: 1 counter-clockwise, -1 clockwise, 0 open. `glances`: off
-    center.
+    center. `parts`: the ends of the sides at which they touch: the front part of a flank, the left part of a front.
     """
     found = _fitting(first, second, wanted)
     if found is None:
@@ -88,6 +91,8 @@ def find_meeting(
     cost = _cost(first, second, touches.first, touches.second, margins) + _edge_cost(touches.key, good)
     if any(spins) or glances:
         cost = cost + _against_spin(_levers(first, second, touches, sides), spins, glances)
+    if any(parts):
+        cost = cost + _off_part((first, second), touches, parts)
     return _meeting(first, second, judged, int(np.argmin(np.where(good, cost, np.inf))), cost)
 
 
@@ -248,6 +253,22 @@ def _against_spin(levers: tuple[Floats, Floats], spins: tuple[float, float], gla
         found += abs(spin) * _SPIN_COST * np.clip((_CLEAR_LEVER_M - spin * lever) / (2 * _CLEAR_LEVER_M), 0.0, 1.0)
         if glances and not spin:
             found += _GLANCE_COST * np.clip(1 - np.abs(lever) / _CLEAR_LEVER_M, 0.0, 1.0)
+    return found
+
+
+def _off_part(motions: tuple[Motion, Motion], touches: _Touches, parts: tuple[Area | None, Area | None]) -> Floats:
+    """Cost of contacts away from the told parts of the sides: none in the outer quarter of a side there."""
+    first, second = motions
+    p, q = first.poses(_own_s(touches.first)), second.poses(_own_s(touches.second))
+    center = overlap_centers(p, first.size, q, second.size)
+    found = np.zeros(len(center))
+    for part, poses, size in zip(parts, (p, q), (first.size, second.size), strict=True):
+        if part is not None:
+            out = poses[:, 2] + SIDES.index(part) * math.pi / 2
+            arm = center - poses[:, :2]
+            half_m = size[SIDES.index(part) % 2] / 2
+            share = (arm[:, 0] * np.cos(out) + arm[:, 1] * np.sin(out)) / half_m
+            found += _PART_COST * np.clip(_OUTER - share, 0.0, 1.0)
     return found
 
 

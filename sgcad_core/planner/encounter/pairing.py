@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from heapq import nsmallest
 from typing import NamedTuple
 
+from sgcad_core.planner.actor_plan import Role
 from sgcad_core.planner.encounter.encounter_search import Meeting, find_meeting
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.out_of_lanes import OUT
@@ -83,8 +84,17 @@ def _meeting(a: Option, b: Option, wanted: tuple[Area, Area] | None) -> Meeting 
     if not one.drivable or not two.drivable:
         return None
     glances = (a.role.glances and b.role.glances) or a.role.goes_on or b.role.goes_on
-    found = find_meeting(one, two, wanted, (a.role.spins, b.role.spins), glances=glances)
+    spins, parts = (a.role.spins, b.role.spins), (_part(a.role), _part(b.role))
+    found = find_meeting(one, two, wanted, spins, glances=glances, parts=parts if wanted else (None, None))
     return found if found is not None and found.cost < OUT else None
+
+
+def _part(role: Role) -> Area | None:
+    """The part of its side at which an actor touches: of a told corner the flank, where its side is the end."""
+    if role.told.corner is None or role.side not in role.told.corner:
+        return None
+    end, flank = role.told.corner
+    return flank if role.side == end else end
 
 
 def _pairs(first: Sequence[Option], second: Sequence[Option], most: int) -> Iterator[tuple[Option, Option]]:
