@@ -19,6 +19,8 @@ from sgcad_core.planner.motion import STEP_S, WINDOW_S, Motion
 from sgcad_core.records.specs import Area
 
 Ints = NDArray[np.int_]
+Parts = tuple[Area | None, Area | None]
+"""Of two sides the ends at which they touch; None: anywhere."""
 
 DEPTH_M = 0.016
 """Overlap of the boxes at the first common sample: enough to be seen, and less than `wreck.SEEN_M`, so that the
@@ -76,7 +78,7 @@ def find_meeting(
     spins: tuple[float, float] = (0.0, 0.0),
     *,
     glances: bool = False,
-    parts: tuple[Area | None, Area | None] = (None, None),
+    parts: Parts = (None, None),
 ) -> Meeting | None:
     """The best contact of two motions on the wanted sides (any sides where None), or None.
 
@@ -96,14 +98,18 @@ def find_meeting(
     return _meeting(first, second, judged, int(np.argmin(np.where(good, cost, np.inf))), cost)
 
 
-def along_sides(first: Motion, second: Motion, wanted: tuple[Area, Area], count: int) -> list[Meeting]:
-    """Contacts all along the wanted sides: `count` at most, over all shifts of the clocks that have one."""
+def along_sides(
+    first: Motion, second: Motion, wanted: tuple[Area, Area], count: int, parts: Parts = (None, None)
+) -> list[Meeting]:
+    """Contacts all along the wanted sides, or at the told parts of them where there are such: `count` at most, over all
+    shifts of the clocks that have one."""
     found = _fitting(first, second, wanted)
     if found is None:
         return []
     judged, good = found
     cost = _cost(first, second, judged.touches.first, judged.touches.second, judged.margins)
-    able = np.flatnonzero(good)
+    there = good & (_off_part((first, second), judged.touches, parts) < _PART_COST / 2)
+    able = np.flatnonzero(there if there.any() else good)
     shares = (np.arange(count) + 0.5) / count
     chosen = dict.fromkeys(int(able[int(share * len(able))]) for share in shares)
     return [_meeting(first, second, judged, number, cost) for number in chosen]
@@ -256,7 +262,7 @@ def _against_spin(levers: tuple[Floats, Floats], spins: tuple[float, float], gla
     return found
 
 
-def _off_part(motions: tuple[Motion, Motion], touches: _Touches, parts: tuple[Area | None, Area | None]) -> Floats:
+def _off_part(motions: tuple[Motion, Motion], touches: _Touches, parts: Parts) -> Floats:
     """Cost of contacts away from the told parts of the sides: none in the outer quarter of a side there."""
     first, second = motions
     p, q = first.poses(_own_s(touches.first)), second.poses(_own_s(touches.second))

@@ -84,12 +84,12 @@ def _meeting(a: Option, b: Option, wanted: tuple[Area, Area] | None) -> Meeting 
     if not one.drivable or not two.drivable:
         return None
     glances = (a.role.glances and b.role.glances) or a.role.goes_on or b.role.goes_on
-    spins, parts = (a.role.spins, b.role.spins), (_part(a.role), _part(b.role))
+    spins, parts = (a.role.spins, b.role.spins), (part_of(a.role), part_of(b.role))
     found = find_meeting(one, two, wanted, spins, glances=glances, parts=parts if wanted else (None, None))
     return found if found is not None and found.cost < OUT else None
 
 
-def _part(role: Role) -> Area | None:
+def part_of(role: Role) -> Area | None:
     """The part of its side at which an actor touches: of a told corner the flank, where its side is the end."""
     if role.told.corner is None or role.side not in role.told.corner:
         return None

@@ -18,7 +18,7 @@ from sgcad_core.planner.encounter.encounter_search import along_sides
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.off_center import beside_middle
 from sgcad_core.planner.encounter.out_of_lanes import OUT
-from sgcad_core.planner.encounter.pairing import Encounter
+from sgcad_core.planner.encounter.pairing import Encounter, part_of
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import AT_IMPACT_M
 
@@ -110,8 +110,9 @@ def _along(found: Encounter, factors: tuple[float, float]) -> Iterator[Encounter
     if not (first and second):
         return
     one, two = first.motion_with(second), second.motion_with(first)
+    parts = part_of(first.role), part_of(second.role)
     if one.drivable and two.drivable:
-        for meeting in along_sides(one, two, found.meeting.sides, _PLACES):
+        for meeting in along_sides(one, two, found.meeting.sides, _PLACES, parts):
             if meeting.cost < min(OUT, found.meeting.cost + _WORSE):
                 yield Encounter(first, second, meeting)
 

@@ -13,7 +13,15 @@ from typing import Any, NamedTuple
 
 from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.contacts.before_contact import RETOLD, is_late, split
-from sgcad_core.reading.contacts.rest_words import HANDS, last_place, leaves_road, rest_lane, side_named, spin_told
+from sgcad_core.reading.contacts.rest_words import (
+    HANDS,
+    last_place,
+    leaves_road,
+    rest_lane,
+    rolls_told,
+    side_named,
+    spin_told,
+)
 from sgcad_core.reading.contacts.road_departure import DepartureReader, MoveHeard, left_scene, wandering
 from sgcad_core.reading.contacts.untouched_events import Untouched
 from sgcad_core.reading.language import Rule, of_role, rule
@@ -21,16 +29,13 @@ from sgcad_core.reading.motion.clauses import Segment, Statement
 from sgcad_core.reading.motion.motion_reader import counts_from_median
 from sgcad_core.reading.motion.motion_record import ManeuverCue, Source
 from sgcad_core.reading.text.compass import COMPASS, WORDS
-from sgcad_core.reading.text.normalise import number
 from sgcad_core.reading.text.sentence_roles import Role
-from sgcad_core.records.course import AT_IMPACT_M, CourseTold, Hand, ImpactTold, Steering
+from sgcad_core.records.course import AT_IMPACT_M, CourseTold, ImpactTold, Steering
 from sgcad_core.units import METERS
 
 UNREAD: frozenset[Role] = frozenset({"codes", "factors", "towing", "injury", "restraint", "police", "health"})
 _FAR_M = (0.5, 300.0)
 """Distances from a contact to a rest that are believed."""
-_MOST_QUARTERS = 24
-"""Quarter turns; more is a misreading."""
 _OVERTURNED = "course_rest.attitude_overturned"
 
 
@@ -217,12 +222,12 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
         weak = one.sources.get("rest.attitude", Source(0)).rule == _OVERTURNED
         one.add_rest("attitude", wording.yields["attitude"], Source(segment.number, lying[0], wording.id), anew=weak)
         break
+    _read_distance(one, segment, text, rests=clause is not None)
     if clause is not None and not rule("course_rest.unknown").search(clause):
         _read_facing(one, segment, clause)
         if m := rule("course_rest.against").search(clause):
             one.add_rest("against", m["thing"], Source(segment.number, m[0], "course_rest.against"))
         one.sources.setdefault("rest.at", Source(segment.number, clause[:20], "course_rest.rest"))
-        _read_distance(one, segment, text)
         if "rest.distance_m" not in one.sources and (m := rule("course_rest.at_impact").search(clause)):
             one.add_rest("distance_m", AT_IMPACT_M, Source(segment.number, m[0], "course_rest.at_impact"))
     if not known and segment.role not in RETOLD:
@@ -231,23 +236,16 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
 
 
 def _read_roll(one: _CourseReader, segment: Segment, text: str, *, early: bool = False) -> bool:
-    """Whether it rolled over, how far, with which side leading; `early`, before any contact, "rolled over" alone may
-    tell of a line that it crossed."""
-    rolled, m = rule("course_rest.rolled").search(text), rule("course_rest.quarters").search(text)
-    if not rolled or (early and not m and rule("course_rest.over_a_line").match(rolled[0])):
-        return False
-    one.add("rolls", True, Source(segment.number, rolled[0], "course_rest.rolled"))
-    if m and 0 < (count := number(next(filter(None, m.groups())))) <= _MOST_QUARTERS:
-        one.add("roll_quarters", count, Source(segment.number, m[0], "course_rest.quarters"))
-    if m := rule("course_rest.rolls_to").search(text):
-        hand: Hand = "left" if next(filter(None, m.groups())).lower() == "left" else "right"
-        one.add("rolls_to", hand, Source(segment.number, m[0], "course_rest.rolls_to"))
-    return True
+    """Whether it rolled over, how far, with which side leading; `early`: before any contact."""
+    told = rolls_told(text, early=early)
+    for name, value, words, by in told:
+        one.add(name, value, Source(segment.number, words, by))
+    return bool(told)
 
 
-def _read_distance(one: _CourseReader, segment: Segment, text: str) -> None:
+def _read_distance(one: _CourseReader, segment: Segment, text: str, *, rests: bool) -> None:
     """The way from the contact to the rest, or how far from it the rest is."""
-    for told in (rule("course_rest.from_impact"), rule("course_rest.way_to_rest")):
+    for told in of_role("rest_distance") if rests else (rule("course_rest.pushed_by"),):
         if m := told.search(text):
             meters = float(m["number"]) * METERS[m["unit"].lower()]
             if _FAR_M[0] <= meters <= _FAR_M[1]:

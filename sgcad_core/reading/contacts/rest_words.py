@@ -17,6 +17,8 @@ from sgcad_core.records.course import Hand, RestLane, Spin
 from sgcad_core.records.specs import Compass
 
 HANDS: dict[str, Hand] = {"left": "left", "right": "right"}
+_MOST_QUARTERS = 24
+"""Quarter turns; more is a misreading."""
 
 
 class LaneRead(NamedTuple):
@@ -76,6 +78,32 @@ def _turned_by(text: str) -> float | None:
         return None
     count = 1 if m["count"].lower() in ("a", "an") else number(m["count"])
     return count * {"quarter": 90.0, "half": 180.0}.get(m["part"].lower(), 360.0)
+
+
+class RollRead(NamedTuple):
+    """One thing told of a rollover: the name of the fact, its value, the words, and by which rule."""
+
+    name: str
+    value: bool | int | Hand
+    words: str
+    rule: str
+
+
+def rolls_told(text: str, *, early: bool = False) -> tuple[RollRead, ...]:
+    """What a text tells of a rollover: that there is one, how far, with which side leading; () where it tells none.
+
+    `early`, before any contact, "rolled over" alone may tell of a line that the vehicle crossed.
+    """
+    rolled, m = rule("course_rest.rolled").search(text), rule("course_rest.quarters").search(text)
+    if not rolled or (early and not m and rule("course_rest.over_a_line").match(rolled[0])):
+        return ()
+    found = [RollRead("rolls", True, rolled[0], "course_rest.rolled")]
+    if m and 0 < (count := number(next(filter(None, m.groups())))) <= _MOST_QUARTERS:
+        found.append(RollRead("roll_quarters", count, m[0], "course_rest.quarters"))
+    if m := rule("course_rest.rolls_to").search(text):
+        hand: Hand = "left" if next(filter(None, m.groups())).lower() == "left" else "right"
+        found.append(RollRead("rolls_to", hand, m[0], "course_rest.rolls_to"))
+    return tuple(found)
 
 
 def leaves_road(text: str) -> bool:
