@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sgcad_core.geometry.plane import overlap_centers
 from sgcad_core.metrics.thresholds import DRIVING
-from sgcad_core.planner.encounter.encounter_search import find_meeting
+from sgcad_core.planner.encounter.encounter_search import along_sides, find_meeting
 from sgcad_core.planner.lines.actor_course import find_course
 from sgcad_core.planner.lines.axle_to_box import bent_before, box_path
 from sgcad_core.planner.lines.maneuver_course import course_of
@@ -213,6 +214,22 @@ def test_two_that_cross_meet_on_the_wanted_sides():
         assert found is not None
         assert found.sides == wanted
     assert find_meeting(east, north, ("left", "front")) is None
+
+
+def along_the_flank(found) -> float:
+    """How far ahead of its middle the first one, driving east, is met, in halves of its length."""
+    one, two = found.first.poses([found.first_s]), found.second.poses([found.second_s])
+    return float(overlap_centers(one, CAR, two, CAR)[0, 0] - one[0, 0]) / (CAR[0] / 2)
+
+
+@pytest.mark.parametrize(("part", "low", "high"), [("front", 0.4, 1.0), ("back", -1.0, -0.4)])
+def test_two_touch_at_the_told_part_of_a_flank(part, low, high):
+    east, north = straight_motion((0, 0), 0.0, 12.0), straight_motion((0, 0), math.pi / 2, 12.0)
+    found = find_meeting(east, north, ("right", "front"), parts=(part, None))
+    assert low < along_the_flank(found) < high
+    for one in along_sides(east, north, ("right", "front"), 5, (part, None)):
+        assert np.sign(along_the_flank(one)) == np.sign(low + high)
+    assert len({round(along_the_flank(one), 2) for one in along_sides(east, north, ("right", "front"), 5)}) == 5
 
 
 def test_two_that_never_come_near_do_not_meet():

@@ -779,3 +779,13 @@ def test_a_turn_that_is_told_behind_a_stop_is_meant(text: str, meant: str | None
     vehicle = read(f"V1 and V2 were westbound. {text}").crash.vehicle("V2")
     assert vehicle is not None
     assert (vehicle.maneuver, vehicle.meant) == ("stopped", meant)
+
+
+@pytest.mark.parametrize(("sides", "corners"), [
+    ("left front of V1 struck the right rear of V2", {"V1": ("front", "left"), "V2": ("back", "right")}),
+    ("front of V1 struck the left rear of V2", {"V2": ("back", "left")}),
+    ("front of V1 struck the back of V2", {}),
+])  # fmt: skip
+def test_a_told_corner_is_planned_for(sides: str, corners: dict[str, tuple[str, str]]) -> None:
+    courses = read(f"V1 was northbound. V2 was eastbound. The {sides}.").crash.driven
+    assert {name: course.corner for name, course in courses.items() if course.corner} == corners

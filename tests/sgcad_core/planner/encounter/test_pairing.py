@@ -8,7 +8,8 @@ from types import SimpleNamespace
 import pytest
 
 from sgcad_core.planner.encounter import pairing
-from sgcad_core.planner.encounter.pairing import Stage, search
+from sgcad_core.planner.encounter.pairing import Stage, part_of, search
+from sgcad_core.records.course import CourseTold
 
 
 @dataclass(frozen=True)
@@ -17,6 +18,15 @@ class Way:
 
     name: str
     cost: float
+
+
+@pytest.mark.parametrize(("side", "corner", "part"), [
+    ("front", ("front", "left"), "left"), ("left", ("front", "left"), "front"), ("right", ("back", "right"), "back"),
+    ("back", ("front", "left"), None), ("front", None, None), (None, ("front", "left"), None),
+])  # fmt: skip
+def test_a_told_corner_is_met_at_its_part_of_the_side(side: str | None, corner: object, part: str | None) -> None:
+    role = SimpleNamespace(side=side, told=CourseTold(corner=corner))  # type: ignore[arg-type]
+    assert part_of(role) == part  # type: ignore[arg-type]
 
 
 def test_a_dear_pair_is_not_taken_because_its_meeting_is_cheap(monkeypatch: pytest.MonkeyPatch) -> None:
