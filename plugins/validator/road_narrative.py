@@ -21,6 +21,7 @@ from sgcad_core.interfaces import Validator
 from sgcad_core.kinds import ALLEY, DRIVEWAY, PARKING_LOT, junction_kind, unsupported_kind
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.layout.legs_used import ahead, legs_used, turns_off
+from sgcad_core.reading.layout.parted_roads import has_other_half
 from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts
 from sgcad_core.reading.text.compass import AXIS_NAMES, NAMES, angle_of, compass_of_angle, turned
 from sgcad_core.records.specs import Compass
@@ -168,7 +169,8 @@ class RoadNarrative(Validator):
                 what, remedy = f"the {name} road is two-way in the report", "give each direction at least one lane"
                 both = ({"lanes_in": SOME_LANES, "lanes_out": SOME_LANES},)
                 yield _finding(what, _ids(here), "lanes in one direction", remedy, holds=(along(road, both),)), fields
-            if road.lanes.one_way and here and all(d.forward and d.backward for d in here):
+            alone = road.lanes.one_way and not has_other_half(road.lanes)
+            if alone and here and all(d.forward and d.backward for d in here):
                 what, remedy = f"the {name} road is one-way in the report", "set the other direction's lanes to 0"
                 either = ({"lanes_in": SOME_LANES, "lanes_out": (0,)}, {"lanes_in": (0,), "lanes_out": SOME_LANES})
                 found = _finding(what, _ids(here), "lanes in both directions", remedy, holds=(along(road, either),))

@@ -98,6 +98,8 @@ class CourseTold:
     no_evasion: bool = False
     """The report says that it did nothing."""
     lost_control: bool = False
+    yaws: Spin | None = None
+    """How it turns out of control before its first contact."""
     departs: DepartureSide | None = None
     """Leaves the road before its first contact, or before it rolls over where it has none."""
     beyond: bool = False

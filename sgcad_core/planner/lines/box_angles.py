@@ -14,6 +14,9 @@ ASKEW, STEERS, SKIDS = "stands askew", "steers aside before contact", "skids bef
 SLIDES = "slides into the contact at an angle that no steering explains"
 _IN_A_ROW_RAD, _PARKED_ACROSS = math.radians(20.0), 0.5
 """Angle to the curb from which on a parked vehicle is out of its row, and the cost of that."""
+_AGAINST = 0.8
+"""Cost of a skid that turns the vehicle otherwise than told."""
+_LEAST_BACK_RAD = math.radians(90.0)
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
 
@@ -23,6 +26,7 @@ def aiming(role: Role) -> list[Twist]:
     off = mismatch(role)
     if abs(off) < math.radians(30):
         return []
+    off = _as_told(role, off)
     angles = [off - math.copysign(math.radians(k), off) for k in (45, 25, 0)]
     return [twist for a in angles for twist in _turned(role, a, 0.5 + abs(a) / 1.6 + _unlike(role, a))]
 
@@ -40,8 +44,22 @@ def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
             radius = max(abs(role.place.aside_m) / reach, 1.2 / tightest(role.size[0]))
             found.append(Twist(cost + 0.02, angle_rad, STEERS, radius_m=radius))
     if role.may_skid:
-        found.append(Twist(cost + 0.1, angle_rad, SKIDS, skids=True))
+        found.append(Twist(cost + 0.1 + _AGAINST * (_sense(role) * angle_rad < 0.0), angle_rad, SKIDS, skids=True))
     return found
+
+
+def _sense(role: Role) -> float:
+    """How it is told to turn before the contact: 1 counter-clockwise, -1 clockwise, 0 untold."""
+    return {"counterclockwise": 1.0, "clockwise": -1.0}.get(role.told.yaws or "", 0.0)
+
+
+def _as_told(role: Role, angle_rad: float) -> float:
+    """An angle of the box, or the longer way round to it where that is the told sense and no more than three quarters
+    of a turn."""
+    way = _sense(role)
+    if way * angle_rad >= 0.0 or not role.may_skid or abs(angle_rad) < _LEAST_BACK_RAD:
+        return angle_rad
+    return angle_rad + way * 2 * math.pi
 
 
 def _unlike(role: Role, angle_rad: float) -> float:

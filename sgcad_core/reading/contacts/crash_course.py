@@ -21,6 +21,7 @@ from sgcad_core.reading.contacts.rest_words import (
     rolls_told,
     side_named,
     spin_told,
+    way_told,
 )
 from sgcad_core.reading.contacts.road_departure import DepartureReader, MoveHeard, left_scene, wandering
 from sgcad_core.reading.contacts.untouched_events import Untouched
@@ -31,11 +32,8 @@ from sgcad_core.reading.motion.motion_record import ManeuverCue, Source
 from sgcad_core.reading.text.compass import COMPASS, WORDS
 from sgcad_core.reading.text.sentence_roles import Role
 from sgcad_core.records.course import AT_IMPACT_M, CourseTold, ImpactTold, Steering
-from sgcad_core.units import METERS
 
 UNREAD: frozenset[Role] = frozenset({"codes", "factors", "towing", "injury", "restraint", "police", "health"})
-_FAR_M = (0.5, 300.0)
-"""Distances from a contact to a rest that are believed."""
 _OVERTURNED = "course_rest.attitude_overturned"
 
 
@@ -182,7 +180,11 @@ def _read_departure(one: _CourseReader, segment: Segment, text: str) -> None:
 
 
 def _keep_moves(one: _CourseReader) -> None:
-    """The moves on the way to the contact, where there are several; their sources are "moves.0" and so on."""
+    """The moves on the way to the contact, where there are several; their sources are "moves.0" and so on. How it yaws
+    counts in any case."""
+    for heard, source, _ in one.moves:
+        if heard.move.kind == "yaws":
+            one.add("yaws", heard.move.side, source)
     kept = wandering([move for move, *_ in one.moves])
     one.course = replace(one.course, moves=tuple(move.move for move in kept))
     for n, move in enumerate(kept):
@@ -222,7 +224,8 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
         weak = one.sources.get("rest.attitude", Source(0)).rule == _OVERTURNED
         one.add_rest("attitude", wording.yields["attitude"], Source(segment.number, lying[0], wording.id), anew=weak)
         break
-    _read_distance(one, segment, text, rests=clause is not None)
+    if way := way_told(text, rests=clause is not None):
+        one.add_rest("distance_m", way.meters, Source(segment.number, way.words, way.rule))
     if clause is not None and not rule("course_rest.unknown").search(clause):
         _read_facing(one, segment, clause)
         if m := rule("course_rest.against").search(clause):
@@ -241,16 +244,6 @@ def _read_roll(one: _CourseReader, segment: Segment, text: str, *, early: bool =
     for name, value, words, by in told:
         one.add(name, value, Source(segment.number, words, by))
     return bool(told)
-
-
-def _read_distance(one: _CourseReader, segment: Segment, text: str, *, rests: bool) -> None:
-    """The way from the contact to the rest, or how far from it the rest is."""
-    for told in of_role("rest_distance") if rests else (rule("course_rest.pushed_by"),):
-        if m := told.search(text):
-            meters = float(m["number"]) * METERS[m["unit"].lower()]
-            if _FAR_M[0] <= meters <= _FAR_M[1]:
-                one.add_rest("distance_m", round(meters, 1), Source(segment.number, m[0], told.id))
-            return
 
 
 def _rest_clause(segment: Segment, text: str) -> str | None:

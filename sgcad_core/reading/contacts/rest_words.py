@@ -15,8 +15,11 @@ from sgcad_core.reading.text.compass import WORDS, turned
 from sgcad_core.reading.text.normalise import number
 from sgcad_core.records.course import Hand, RestLane, Spin
 from sgcad_core.records.specs import Compass
+from sgcad_core.units import METERS
 
 HANDS: dict[str, Hand] = {"left": "left", "right": "right"}
+_FAR_M = (0.5, 300.0)
+"""Distances from a contact to a rest that are believed."""
 _MOST_QUARTERS = 24
 """Quarter turns; more is a misreading."""
 
@@ -104,6 +107,23 @@ def rolls_told(text: str, *, early: bool = False) -> tuple[RollRead, ...]:
         hand: Hand = "left" if next(filter(None, m.groups())).lower() == "left" else "right"
         found.append(RollRead("rolls_to", hand, m[0], "course_rest.rolls_to"))
     return tuple(found)
+
+
+class WayRead(NamedTuple):
+    """The way from the contact to the rest, or how far from it the rest is, with the words and the rule."""
+
+    meters: float
+    words: str
+    rule: str
+
+
+def way_told(text: str, *, rests: bool) -> WayRead | None:
+    """The way to the rest that a text tells; None where it tells none that is believed. `rests`: it tells the rest."""
+    for told in of_role("rest_distance") if rests else (rule("course_rest.pushed_by"),):
+        if m := told.search(text):
+            meters = float(m["number"]) * METERS[m["unit"].lower()]
+            return WayRead(round(meters, 1), m[0], told.id) if _FAR_M[0] <= meters <= _FAR_M[1] else None
+    return None
 
 
 def leaves_road(text: str) -> bool:

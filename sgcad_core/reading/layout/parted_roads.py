@@ -24,7 +24,7 @@ def with_parted_roads(facts: RoadFacts) -> RoadFacts:
 
 def _lanes(facts: RoadFacts, road: RoadFact) -> LaneFacts:
     told = road.lanes
-    if told.one_way and (told.divided or told.median in _PARTS) and facts.junction.kind in ("none", RAMP):
+    if has_other_half(told) and facts.junction.kind in ("none", RAMP):
         return _one_of_two(told)
     if road.kind != "freeway" and not _expected(facts, road):
         return told
@@ -33,6 +33,11 @@ def _lanes(facts: RoadFacts, road: RoadFact) -> LaneFacts:
     return replace(
         told, divided=True, each_way=2 if whole else told.each_way, median="barrier" if barrier else told.median
     )
+
+
+def has_other_half(told: LaneFacts) -> bool:
+    """Whether a road is told to be one-way and to have a median: it is one carriageway of a divided road."""
+    return bool(told.one_way and (told.divided or told.median in _PARTS))
 
 
 def _one_of_two(told: LaneFacts) -> LaneFacts:

@@ -256,7 +256,18 @@ def _conditions(builder: FactBuilder, read: StageResults) -> Iterator[Fact]:
 
 
 _REST = ("facing_deg", "where", "side", "attitude", "against", "distance_m", "lane", "lane_way")
-_PLAIN = ("lost_control", "departs", "beyond", "spin", "spin_deg", "rolls", "roll_quarters", "rolls_to", "leaves")
+_PLAIN = (
+    "lost_control",
+    "yaws",
+    "departs",
+    "beyond",
+    "spin",
+    "spin_deg",
+    "rolls",
+    "roll_quarters",
+    "rolls_to",
+    "leaves",
+)
 
 
 def course_provenance(builder: FactBuilder, crash: CrashTold) -> Iterator[Fact]:

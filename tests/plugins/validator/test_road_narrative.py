@@ -173,6 +173,12 @@ def test_traffic_against_a_one_way_street_is_found() -> None:
     assert any("one-way" in what for what in repairs(ONE_WAY, leg("N", 3, 3), leg("S", 3, 3)))
 
 
+def test_of_a_one_way_road_with_a_median_both_carriageways_may_be_drawn() -> None:
+    divided = ONE_WAY.replace("one-way street", "one-way street with a grass median")
+    assert divided != ONE_WAY
+    assert not [what for what in repairs(divided, leg("N", 3, 3), leg("S", 3, 3)) if "one-way" in what]
+
+
 MIXED = (
     "V1 was traveling westbound on a two-way road with one lane in each direction. V2 was northbound on a one-lane, "
     "one-way street. The vehicles met in the intersection and the front of V2 struck the left side of V1."
