@@ -14,21 +14,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import SIDES, Floats, box_gaps, overlap_centers, sides_at
-from sgcad_core.planner.aftermath.impact import FRICTION
-from sgcad_core.planner.motion import STEP_S, WINDOW_S, Motion
+from sgcad_core.planner.encounter.touch_costs import (
+    PART_COST,
+    Ints,
+    Parts,
+    Touches,
+    against_spin,
+    blow_levers,
+    off_part,
+    own_s,
+)
+from sgcad_core.planner.motion import Motion
 from sgcad_core.records.specs import Area
-
-Ints = NDArray[np.int_]
-Parts = tuple[Area | None, Area | None]
-"""Of two sides the ends at which they touch; None: anywhere."""
 
 DEPTH_M = 0.016
 """Overlap of the boxes at the first common sample: enough to be seen, and less than `wreck.SEEN_M`, so that the
 consequences of the touch begin after that sample."""
-_SPIN_COST, _GLANCE_COST, _CLEAR_LEVER_M = 0.4, 0.15, 0.6
-"""Lever at which an impact in the stated sense of rotation costs nothing, and in the opposite sense the full cost."""
-_PART_COST, _OUTER = 0.6, 0.5
-"""Cost of a contact at the other half of a side than told, and the share of half the side from which on it is there."""
 _SECANTS = 6
 """Iterations; the time of the overlap is then known to some microseconds."""
 _MOST_SHIFTS = 64
@@ -49,18 +50,10 @@ class Meeting(NamedTuple):
     """How clear both sides are, 0 to 1."""
 
 
-class _Touches(NamedTuple):
-    """First overlaps, one a shift: grid indices (fractional) of both motions where they are DEPTH_M deep."""
-
-    key: Ints
-    first: Floats
-    second: Floats
-
-
 class _Judged(NamedTuple):
     """Touches with the side codes of both motions, the smaller of both margins, and how deep they really are."""
 
-    touches: _Touches
+    touches: Touches
     sides: tuple[Ints, Ints]
     margins: Floats
     depth: Floats
@@ -92,9 +85,9 @@ def find_meeting(
     touches, sides, margins, _ = judged
     cost = _cost(first, second, touches.first, touches.second, margins) + _edge_cost(touches.key, good)
     if any(spins) or glances:
-        cost = cost + _against_spin(_levers(first, second, touches, sides), spins, glances)
+        cost = cost + against_spin(blow_levers(first, second, touches, sides), spins, glances)
     if any(parts):
-        cost = cost + _off_part((first, second), touches, parts)
+        cost = cost + off_part((first, second), touches, parts)
     return _meeting(first, second, judged, int(np.argmin(np.where(good, cost, np.inf))), cost)
 
 
@@ -108,7 +101,7 @@ def along_sides(
         return []
     judged, good = found
     cost = _cost(first, second, judged.touches.first, judged.touches.second, judged.margins)
-    there = good & (_off_part((first, second), judged.touches, parts) < _PART_COST / 2)
+    there = good & (off_part((first, second), judged.touches, parts) < PART_COST / 2)
     able = np.flatnonzero(there if there.any() else good)
     shares = (np.arange(count) + 0.5) / count
     chosen = dict.fromkeys(int(able[int(share * len(able))]) for share in shares)
@@ -133,7 +126,7 @@ def _meeting(first: Motion, second: Motion, judged: _Judged, number: int, cost: 
     """One of the touches as a record."""
     touches, sides, margins, _ = judged
     named = (SIDES[sides[0][number]], SIDES[sides[1][number]])
-    first_s, second_s = (float(_own_s(k[number])) for k in (touches.first, touches.second))
+    first_s, second_s = (float(own_s(k[number])) for k in (touches.first, touches.second))
     return Meeting(float(cost[number]), first, second, first_s, second_s, named, float(margins[number]))
 
 
@@ -150,7 +143,7 @@ def _judged(first: Motion, second: Motion) -> _Judged | None:
     return found
 
 
-def _touches(first: Motion, second: Motion) -> _Touches | None:
+def _touches(first: Motion, second: Motion) -> Touches | None:
     """The first touch for every shift of the clocks that has one."""
     if first.standing and second.standing:
         return None
@@ -196,20 +189,20 @@ def _about(points: Floats, others: Floats, reach_m: float) -> NDArray[np.bool_]:
     return inside
 
 
-def _refined(first: Motion, second: Motion, key: Ints, i: Floats, j: Floats) -> _Touches:
+def _refined(first: Motion, second: Motion, key: Ints, i: Floats, j: Floats) -> Touches:
     """Times at which the overlap is DEPTH_M deep, from overlaps known to a grid step."""
     move_i, move_j = float(not first.standing), float(not second.standing)
 
-    standing = [m.poses(_own_s(k)) if m.standing else None for m, k in ((first, i), (second, j))]
+    standing = [m.poses(own_s(k)) if m.standing else None for m, k in ((first, i), (second, j))]
 
     def over(at: Floats) -> Floats:
         p, q = standing
-        p = first.poses(_own_s(i + at)) if p is None else p
-        q = second.poses(_own_s(j + at)) if q is None else q
+        p = first.poses(own_s(i + at)) if p is None else p
+        q = second.poses(own_s(j + at)) if q is None else q
         return -DEPTH_M - box_gaps(p, first.size, q, second.size)
 
     at = _root(over, len(i))
-    return _Touches(key, i + move_i * at, j + move_j * at)
+    return Touches(key, i + move_i * at, j + move_j * at)
 
 
 def _root(over: Callable[[Floats], Floats], count: int) -> Floats:
@@ -232,14 +225,9 @@ def _root(over: Callable[[Floats], Floats], count: int) -> Floats:
     return at
 
 
-def _own_s(index: Floats) -> Floats:
-    """Own times at fractional indices of the window's grid."""
-    return index * STEP_S + WINDOW_S[0]
-
-
 def _judge(first: Motion, second: Motion, i: Floats, j: Floats) -> tuple[tuple[Ints, Ints], Floats, Floats]:
     """Side codes of both, the smaller of both margins, and the depth of the overlap."""
-    p, q = first.poses(_own_s(i)), second.poses(_own_s(j))
+    p, q = first.poses(own_s(i)), second.poses(own_s(j))
     center = overlap_centers(p, first.size, q, second.size)
     (side_p, clear_p), (side_q, clear_q) = sides_at(p, first.size, center), sides_at(q, second.size, center)
     return (side_p, side_q), np.minimum(clear_p, clear_q), -box_gaps(p, first.size, q, second.size)
@@ -247,59 +235,9 @@ def _judge(first: Motion, second: Motion, i: Floats, j: Floats) -> tuple[tuple[I
 
 def _cost(first: Motion, second: Motion, i: Floats, j: Floats, margins: Floats) -> Floats:
     """Cost of unclear sides and unsuitable places; small differences only decide between shifts."""
-    unfit = first.penalties(_own_s(i)) + second.penalties(_own_s(j))
+    unfit = first.penalties(own_s(i)) + second.penalties(own_s(j))
     unclear: Floats = 30.0 * np.maximum(0.01 - margins, 0.0) + 0.15 * np.maximum(0.6 - margins, 0.0)
     return unfit + unclear
-
-
-def _against_spin(levers: tuple[Floats, Floats], spins: tuple[float, float], glances: bool) -> Floats:
-    """Cost of impacts that turn a body in another sense than stated, by their lever about its center."""
-    found = np.zeros(len(levers[0]))
-    for lever, spin in zip(levers, spins, strict=True):
-        found += abs(spin) * _SPIN_COST * np.clip((_CLEAR_LEVER_M - spin * lever) / (2 * _CLEAR_LEVER_M), 0.0, 1.0)
-        if glances and not spin:
-            found += _GLANCE_COST * np.clip(1 - np.abs(lever) / _CLEAR_LEVER_M, 0.0, 1.0)
-    return found
-
-
-def _off_part(motions: tuple[Motion, Motion], touches: _Touches, parts: Parts) -> Floats:
-    """Cost of contacts away from the told parts of the sides: none in the outer quarter of a side there."""
-    first, second = motions
-    p, q = first.poses(_own_s(touches.first)), second.poses(_own_s(touches.second))
-    center = overlap_centers(p, first.size, q, second.size)
-    found = np.zeros(len(center))
-    for part, poses, size in zip(parts, (p, q), (first.size, second.size), strict=True):
-        if part is not None:
-            out = poses[:, 2] + SIDES.index(part) * math.pi / 2
-            arm = center - poses[:, :2]
-            half_m = size[SIDES.index(part) % 2] / 2
-            share = (arm[:, 0] * np.cos(out) + arm[:, 1] * np.sin(out)) / half_m
-            found += _PART_COST * np.clip(_OUTER - share, 0.0, 1.0)
-    return found
-
-
-def _levers(first: Motion, second: Motion, touches: _Touches, sides: tuple[Ints, Ints]) -> tuple[Floats, Floats]:
-    """Levers of the impact about both centers, metres, counter-clockwise positive: friction bounds its direction."""
-    i, j = _own_s(touches.first), _own_s(touches.second)
-    p, q = first.poses(i), second.poses(j)
-    center = overlap_centers(p, first.size, q, second.size)
-    push = _velocity(first, i) - _velocity(second, j)
-    flank_of_second = (sides[1] % 2 == 1) & (sides[0] % 2 == 0)
-    out = np.where(flank_of_second, q[:, 2] + sides[1] * math.pi / 2 + math.pi, p[:, 2] + sides[0] * math.pi / 2)
-    way = np.arctan2(push[:, 1], push[:, 0])
-    most = math.atan(FRICTION)
-    way = out + np.clip(np.mod(way - out + math.pi, 2 * math.pi) - math.pi, -most, most)
-    arms = [center - pose[:, :2] for pose in (p, q)]
-    turning = [arm[:, 0] * np.sin(way) - arm[:, 1] * np.cos(way) for arm in arms]
-    return -turning[0], turning[1]
-
-
-def _velocity(motion: Motion, own_s: Floats) -> Floats:
-    """(n, 2) m/s at own times."""
-    if motion.standing:
-        return np.zeros((len(own_s), 2))
-    velocity: Floats = (motion.poses(own_s)[:, :2] - motion.poses(own_s - STEP_S)[:, :2]) / STEP_S
-    return velocity
 
 
 def _edge_cost(key: Ints, good: NDArray[np.bool_]) -> Floats:

@@ -256,18 +256,7 @@ def _conditions(builder: FactBuilder, read: StageResults) -> Iterator[Fact]:
 
 
 _REST = ("facing_deg", "where", "side", "attitude", "against", "distance_m", "lane", "lane_way")
-_PLAIN = (
-    "lost_control",
-    "yaws",
-    "departs",
-    "beyond",
-    "spin",
-    "spin_deg",
-    "rolls",
-    "roll_quarters",
-    "rolls_to",
-    "leaves",
-)
+_OWN = ("lost_control", "yaws", "departs", "beyond", "spin", "spin_deg", "rolls", "roll_quarters", "rolls_to", "leaves")
 
 
 def course_provenance(builder: FactBuilder, crash: CrashTold) -> Iterator[Fact]:
@@ -292,7 +281,7 @@ def _course_values(course: CourseTold) -> Iterator[tuple[str, Value, str]]:
         yield "evasion.steers", course.steers, "steers"
     if course.no_evasion and not (course.brakes or course.steers):
         yield "evasion.none", True, "no_evasion"
-    for name in _PLAIN:
+    for name in _OWN:
         if value := getattr(course, name):
             yield name, value, name
     for number, move in enumerate(course.moves):
