@@ -24,7 +24,7 @@ from sgcad_core.planner.encounter.motion_options import Option, forced, options
 from sgcad_core.planner.encounter.pacing_choices import pacings
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.later_courses import runs_aside, runs_into, runs_to_line, with_run
-from sgcad_core.planner.later_places import ToBeStruck, is_astray, lane_line
+from sgcad_core.planner.later_places import ToBeStruck, lane_line, not_as_told
 from sgcad_core.planner.motion import STEP_S, Motion
 from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.records.specs import Area, Contact
@@ -48,7 +48,7 @@ many take long."""
 _ACROSS, _ALONG_RAD = 2, math.radians(50.0)
 """Weight of a vehicle that stands across its road, at more than this angle: as much as both sides of a contact."""
 _ASTRAY = 2
-"""Weight of a vehicle that is struck beside its lane, untold."""
+"""Weight of a vehicle that is struck beside its lane, untold, or at another speed than told."""
 _UNTOLD = 3
 """Weight of an untold contact: more than of both sides of a told one."""
 _OUTSIDE, _STARTS_M = 20.0, 4.0
@@ -100,7 +100,7 @@ class LaterMeetings:
             self._place(tracks)
             missed = _UNTOLD * self.order.untold + sides_missed(self.scene, contact)
             missed += _ACROSS * sum(map(self._stands_across, tracks))
-            missed += _ASTRAY * sum(is_astray(self.role_of(one.actor), one, self.surface) for one in tracks)
+            missed += _ASTRAY * sum(not_as_told(self.role_of(one.actor), one, self.surface) for one in tracks)
             if self.order.holds(pair_of(contact)) and (best is None or missed < best[0]):
                 best = missed, tracks
             for track in tracks:

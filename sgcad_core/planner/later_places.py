@@ -20,6 +20,7 @@ from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.records.specs import Area
 from sgcad_core.roads.surface import RoadSurface
+from sgcad_core.units import MPS_PER_MPH
 
 _LEAST_MPS = 2.6
 """A slower impact is hardly one, and files whose vertices lie 0.11 m apart cannot show it."""
@@ -42,6 +43,8 @@ _LINE_M, _LINE_STEP_M = 60.0, 2.0
 """Length of the line on which a vehicle may be struck, each way from its usual place, and between its points."""
 _BESIDE_M, _PARKED_M = 1.5, 8.0
 """Distance from the middle of its lane from which on a vehicle is beside it, and is not parked along its road."""
+_SLOWED = 0.1
+"""Share of its told speed by which a vehicle may drive slower or faster."""
 _OUT_OF_LANES = ACROSS_LANES | DEPARTURES.keys() | {"crossing_centerline", "backing", "u_turn"}
 _IN_JUNCTION = 0.8
 """Rank of one that waits in a junction: drivers wait before it."""
@@ -158,6 +161,21 @@ def is_astray(role: Role, track: Track, surface: RoadSurface) -> bool:
         return aside_m > _PARKED_M and not role.course.stalls
     waits = actor.maneuver == "stopped" and bool(not_waiting(surface, pose[None])[0])
     return waits or aside_m > _BESIDE_M
+
+
+def is_slowed(role: Role, track: Track) -> bool:
+    """Whether a vehicle never drives at the speed that is told of it before it is struck."""
+    told_mps = (role.actor.speed_mph or 0) * MPS_PER_MPH
+    before = track.poses[: track.hit or len(track.poses), :2]
+    if not told_mps or track.motion.standing or len(before) < 2:
+        return False
+    mps = np.hypot(*np.diff(before, axis=0).T) / STEP_S
+    return float(np.abs(mps - told_mps).min()) > _SLOWED * told_mps
+
+
+def not_as_told(role: Role, track: Track, surface: RoadSurface) -> int:
+    """How much of what is told, or usual, of a vehicle before it is struck is missed: its lane, its speed."""
+    return is_astray(role, track, surface) + is_slowed(role, track)
 
 
 def not_waiting(surface: RoadSurface, poses: Floats) -> Floats:

@@ -11,7 +11,7 @@ import pytest
 from sgcad_core.planner.actor_plan import Role
 from sgcad_core.planner.aftermath.struck_objects import standing_track
 from sgcad_core.planner.encounter.meeting_place import Place
-from sgcad_core.planner.later_places import ToBeStruck, is_astray, lane_line, not_waiting
+from sgcad_core.planner.later_places import ToBeStruck, is_astray, is_slowed, lane_line, not_as_told, not_waiting
 from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.records.course import CourseTold
@@ -92,6 +92,18 @@ def test_one_that_is_struck_beside_its_lane_is_astray(
 def test_one_that_steers_as_told_is_not_astray() -> None:
     role, track = at("straight", (5.0, -40.0, math.pi / 2))
     assert not is_astray(replace(role, told=CourseTold(steers="right")), track, road_surface(network("four_leg")))
+
+
+@pytest.mark.parametrize(
+    ("told_mph", "mps", "slowed"), [(40, 17.9, False), (40, 9.0, True), (40, 25.0, True), (None, 3.0, False)]
+)
+def test_one_that_never_drives_at_its_told_speed_is_slowed(told_mph: int | None, mps: float, slowed: bool) -> None:
+    role, track = at("straight", (1.8, -40.0, math.pi / 2))
+    role = replace(role, actor=role.actor.model_copy(update={"speed_mph": told_mph}))
+    track.motion = replace(track.motion, standing=False)
+    track.poses = track.poses + np.outer(np.arange(len(track.poses)) * mps * 0.05, (0.0, 1.0, 0.0))
+    assert is_slowed(role, track) == slowed
+    assert not_as_told(role, track, road_surface(network("four_leg"))) >= slowed
 
 
 def test_the_line_of_one_that_waits_ends_before_the_junction() -> None:
