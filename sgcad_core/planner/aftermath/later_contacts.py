@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import islice
 from typing import NamedTuple, Protocol
 
@@ -16,6 +17,7 @@ from sgcad_core.planner.aftermath.struck_objects import Strike, leave_beside, pl
 from sgcad_core.planner.aftermath.told_order import ToldOrder, pair_of
 from sgcad_core.planner.encounter.off_center import NARROW_M, SHARES, USUAL
 from sgcad_core.planner.later_courses import runs_on, with_run
+from sgcad_core.planner.long_things import is_long
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
@@ -179,24 +181,35 @@ class Ending:
         """Places a thing on the way of its vehicle, or on another one that it can take; a note where it is missed. What
         stays where it stands is beside the road, unless the vehicle is told to rest on the road. `ends`: the cost of
         the rest as settled, and the number of contacts that follow."""
-        beside = strike.thing.stays and told.rest.where not in ("road", "intersection")
-        placed = beside and self._is_met(strike, surface, ends, on_road=False)
+        along = is_long(size_m(strike.thing))
+        beside = strike.thing.stays and (along or told.rest.where not in ("road", "intersection"))
+        placed = along and self._is_met(strike, surface, ends, on_road=False, as_told=True)
+        placed = placed or (beside and self._is_met(strike, surface, ends, on_road=False))
         if not placed and not self._is_met(strike, surface, ends, on_road=True):
             leave_beside(self.scene, strike)
             yield f"{strike.by} does not reach {strike.thing.id}, which it strikes as told"
 
     def _is_met(
-        self, strike: Strike, surface: RoadSurface, ends: tuple[Callable[[], float], int], *, on_road: bool
+        self,
+        strike: Strike,
+        surface: RoadSurface,
+        ends: tuple[Callable[[], float], int],
+        *,
+        on_road: bool,
+        as_told: bool = False,
     ) -> bool:
         """Whether a thing has a place on the way of its vehicle, or on another one that it can take; `on_road`: the
-        place may be on the road."""
+        place may be on the road; `as_told`: only along the road, before the told side."""
         scene, before, (cost, more) = self.scene, self.scene.runs, ends
-        if place_thing(scene, strike, surface, cost, self.order, more=more, on_road=on_road):
+        placed = partial(
+            place_thing, scene, strike, surface, cost, self.order, more=more, on_road=on_road, as_told=as_told
+        )
+        if placed():
             return True
-        for run in islice(runs_on(scene, strike.by, surface, self.order.after), _OTHER_WAYS):
+        for run in islice(runs_on(scene, strike.by, surface, self.order.after), _OTHER_WAYS * (1 + as_told)):
             scene.runs = with_run(scene, strike.by, run)
             scene.settle()
-            if self.order.kept and place_thing(scene, strike, surface, cost, self.order, more=more, on_road=on_road):
+            if self.order.kept and placed():
                 return True
             scene.runs = before
             scene.settle()

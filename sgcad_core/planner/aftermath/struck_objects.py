@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import SIDES, Floats, Size, gaps_where_near
 from sgcad_core.planner.actor_plan import is_beside
@@ -47,8 +48,13 @@ _PAST_M = (6.0, 10.0, 16.0, 25.0, 40.0, 60.0)
 _OFF_ROAD_M = 0.3
 _GENTLE_MPS = 0.8
 """Taken where the vehicle is no faster any more."""
+_ON_ROAD, _LEFT_OUT = 10, 99
+"""Rank of what stands on the road over the same beside it; that of places that are not tried."""
 _RANKS = 2
 """Kinds of places (on or off the road, before the told side or another one) that are tried."""
+_FLARES, _ANOTHER_SIDE, _SLANTED = ((0.0, 0), (8.0, 1), (-8.0, 1), (16.0, 2), (-16.0, 2)), 3, 4
+"""Angles to the road at which a long thing may run, degrees, with their ranks; the rank of one along the road that is
+met with another side than told, and that from which on one stands across: the last resort."""
 _OUTWARD_MPS = 0.5
 """Outward speed of a side of the box that can strike an object."""
 _LATE, _EARLY = (0.95, 0.7, 0.45, 0.2), (0.1, 0.25, 0.4, 0.6)
@@ -96,17 +102,20 @@ def _out_of_reach(scene: Scene, strike: Strike) -> Floats:
 
 def place_thing(
     scene: Scene, strike: Strike, surface: RoadSurface, cost: Callable[[], float], order: ToldOrder, *,
-    more: int, on_road: bool = True,
+    more: int, on_road: bool = True, as_told: bool = False,
 ) -> bool:  # fmt: skip
     """Places an object where it is struck with the stated side and the rest is best; False where no place is struck
     next in order.
 
     `cost`: of the rest as settled. `more`: number of contacts that follow. `on_road`: whether it may stand there.
+    `as_told`: a long thing only along the road, and before the told side.
     """
     best: tuple[float, Track] | None = None
     further = _FURTHER if more else _ALL_PLACES
-    for pose in _poses(scene, strike, surface, order.after, more=more):
-        if not (on_road or surface.off(pose[None, :2])[0][0] > _OFF_ROAD_M):
+    for rank, pose in _poses(scene, strike, surface, order.after, more=more):
+        if as_told and rank >= _ANOTHER_SIDE:
+            continue
+        if not on_road and stands_on_road(surface, pose[None], size_m(strike.thing))[0]:
             continue
         track = _stand(scene, strike, pose)
         scene.settle()
@@ -124,8 +133,10 @@ def place_thing(
     return best is not None
 
 
-def _poses(scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, more: int) -> Iterator[Floats]:
-    """The places of an object at one offset after the other."""
+def _poses(
+    scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, more: int
+) -> Iterator[tuple[int, Floats]]:
+    """The places of an object with their ranks, at one offset after the other."""
     for aside in strike.asides:
         yield from _places(scene, replace(strike, asides=(aside,)), surface, after, more=more)
 
@@ -160,8 +171,8 @@ def _stand(scene: Scene, strike: Strike, pose: Floats) -> Track:
 
 
 # ------------------------------------------------------------------ where
-def _places(scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, more: int) -> list[Floats]:
-    """(3,) poses on the way of the vehicle, best first: off the road before on it, the stated side before others."""
+def _places(scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, more: int) -> list[tuple[int, Floats]]:
+    """Ranks and (3,) poses on the way of the vehicle, best first: off the road before on it, the stated side first."""
     size, track = size_m(strike.thing), scene.tracks[strike.by]
     samples = _samples(scene, strike, track, after)
     near = _along_road(track, samples, strike, surface) if is_long(size) else iter(())
@@ -170,14 +181,28 @@ def _places(scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, m
     if not found:
         return []
     poses = np.array([pose for _, pose in found])
-    on_road = surface.off(poses[:, :2])[0] <= _OFF_ROAD_M
-    ranks = np.array([rank for rank, _ in found]) + 10 * on_road
+    on_road = stands_on_road(surface, poses, size)
+    ranks = np.array([rank for rank, _ in found]) + _ON_ROAD * on_road
+    if is_long(size) and (ranks < _SLANTED).any():
+        ranks[ranks >= _SLANTED] = _LEFT_OUT
     shares = (0.6 / (more + 1), *_EARLY) if more else _LATE
-    ordered: list[Floats] = []
-    for rank in np.unique(ranks)[:_RANKS]:
+    ordered: list[tuple[int, Floats]] = []
+    for rank in np.unique(ranks[ranks < _LEFT_OUT])[:_RANKS]:
         chosen = np.flatnonzero(ranks == rank)
-        ordered += [poses[chosen[i]] for i in dict.fromkeys(round(share * (len(chosen) - 1)) for share in shares)]
+        at = dict.fromkeys(round(share * (len(chosen) - 1)) for share in shares)
+        ordered += [(int(rank) % _ON_ROAD, poses[chosen[i]]) for i in at]
     return ordered
+
+
+def stands_on_road(surface: RoadSurface, poses: Floats, size: Size) -> NDArray[np.bool_]:
+    """(n,) whether a thing at (n, 3) poses stands on the road: of a long one any part."""
+    off: Floats = surface.off(poses[:, :2])[0]
+    if not is_long(size):
+        return off <= _OFF_ROAD_M
+    across = np.column_stack((-np.sin(poses[:, 2]), np.cos(poses[:, 2])))
+    for share in (-0.5, 0.5):
+        off = np.minimum(off, surface.off(poses[:, :2] + share * size[1] * across)[0])
+    return off <= 0.0
 
 
 def _samples(scene: Scene, strike: Strike, track: Track, after: int) -> Floats:
@@ -203,7 +228,7 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
         if outward < _OUTWARD_MPS and not grazes:
             continue
         if is_long(size) and side != "back":
-            rank = 1 if side == strike.side or strike.side is None else 2
+            rank = _SLANTED + (side != strike.side and strike.side is not None)
             yield from ((rank, pose) for pose in _along(track, k, side, size))
             continue
         if grazes:
@@ -238,8 +263,8 @@ def _grazed(track: Track, k: int, out: float, size: Size) -> Floats:
 def _along_road(
     track: Track, samples: Floats, strike: Strike, surface: RoadSurface
 ) -> Iterator[tuple[int, Floats, int]]:
-    """(0, pose, sample) of a long thing that runs along the nearest road, where the vehicle comes to it with the stated
-    side."""
+    """(rank, pose, sample) of a long thing that runs along the nearest road, or nearly: first where the vehicle comes
+    to it with the stated side, last along the road where another side meets it."""
     size = size_m(strike.thing)
     poses = track.poses[samples.astype(int)]
     by = (poses - track.poses[samples.astype(int) - 1])[:, :2] / STEP_S
@@ -247,9 +272,14 @@ def _along_road(
     _, _, nearest = roads.nearest(poses[:, :2])
     for k, pose, speed, way in zip(samples.astype(int), poses, by, roads.ways[nearest], strict=True):
         outward = float(speed[1] * math.cos(way) - speed[0] * math.sin(way))
-        away = float(way) + math.copysign(math.pi / 2, outward)
-        if abs(outward) > _OUTWARD_MPS and strike.side in (None, corner_side(pose, track.size, away)):
-            yield 0, beside(pose, track.size, size, away + math.pi, _DEPTH_M), int(k)
+        if abs(outward) <= _OUTWARD_MPS:
+            continue
+        for flare_deg, rank in _FLARES:
+            away = float(way) + math.copysign(math.pi / 2, outward) + math.radians(flare_deg)
+            told = strike.side in (None, corner_side(pose, track.size, away))
+            if told or not flare_deg:
+                rank = rank if told else _ANOTHER_SIDE
+                yield rank, beside(pose, track.size, size, away + math.pi, _DEPTH_M), int(k)
 
 
 def _along(track: Track, k: int, side: Area, size: Size) -> Iterator[Floats]:

@@ -259,7 +259,7 @@ def _facing_other(role: Role, other: Role) -> Role:
         other_spins=bool(other.spins),
         other_lost=other.told.lost_control,
         other_moves_up_m=MOVES_UP_M if other.told.comes == "moves_up" else 0.0,
-        other_long=other.actor.record.thing and is_long(other.size),
+        other_long_m=other.size[0] if other.actor.record.thing and is_long(other.size) else 0.0,
         other_leaves=_leaves(other),
     )
 
