@@ -2,7 +2,7 @@
 an angle and slides along.
 
 Frames: headings counter-clockwise from east, radians; a thing's length is its depth, its width runs along the road, and
-its front faces what comes. Knows boxes; no actor, no road and no time.
+its front faces what comes. Knows boxes and kinds of things; no road and no time.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats, Size, corners_of
-from sgcad_core.records.specs import Area
+from sgcad_core.records.specs import Actor, Area, size_m
 
 _LEAST_M, _SHAPE = 4.0, 2.5
 """Width of the shortest of them, and how often its depth it is at least."""
@@ -31,6 +31,11 @@ _AHEAD_M = 2.5
 def is_long(size: Size) -> bool:
     """Whether a thing of a depth and a width runs along the road."""
     return size[1] >= max(_LEAST_M, _SHAPE * size[0])
+
+
+def runs_along(actor: Actor) -> bool:
+    """Whether a thing runs along the road; a long piece that lies in the way lies across it."""
+    return actor.record.thing and not actor.loose and is_long(size_m(actor))
 
 
 def meeting_angle(side: Area | None) -> float:

@@ -14,7 +14,7 @@ from sgcad_core.planner.actor_plan import Drift, Role, Twist, facing, is_beside
 from sgcad_core.planner.lines.box_angles import ASKEW, aiming
 from sgcad_core.planner.lines.crossing import end_meets_flank
 from sgcad_core.planner.lines.path import Path
-from sgcad_core.planner.long_things import FLARES, hand_of_side, is_long, turned_to
+from sgcad_core.planner.long_things import FLARES, hand_of_side, runs_along, turned_to
 from sgcad_core.planner.motion import Motion
 
 _IN_LANE = 0.9
@@ -87,7 +87,7 @@ def askew(role: Role) -> list[Twist]:
 def beside_the_way(role: Role) -> list[Drift]:
     """Places of an object on the line of the other actor and beside it, as far as their boxes still overlap; what runs
     along the road is met wherever the line comes to it."""
-    if is_long(role.size):
+    if runs_along(role.actor):
         return [Drift(0.0)]
     reach = role.other_width_m / 2 + role.size[1] / 2 - 0.12
     offsets = (0.0, 0.3, -0.3, 0.6, -0.6, reach, -reach)
@@ -97,7 +97,7 @@ def beside_the_way(role: Role) -> list[Drift]:
 def any_angle(role: Role) -> list[Twist]:
     """An object has no heading of its own: its wanted side is turned to the actor that comes, be it tail first."""
     side = facing(role.side) if role.side else 0.0
-    along = _along_the_road(role, side) if is_long(role.size) else []
+    along = _along_the_road(role, side) if runs_along(role.actor) else []
     bearings = ((180, 0.0), (135, 0.05), (-135, 0.05), (90, 0.1), (-90, 0.1))
     from_behind = 180 if role.other_side == "back" else 0
     across = [Twist(cost + _ACROSS * bool(along), math.radians(d - from_behind) - side) for d, cost in bearings]

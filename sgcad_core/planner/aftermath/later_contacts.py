@@ -17,7 +17,7 @@ from sgcad_core.planner.aftermath.struck_objects import Strike, leave_beside, pl
 from sgcad_core.planner.aftermath.told_order import ToldOrder, pair_of
 from sgcad_core.planner.encounter.off_center import NARROW_M, SHARES, USUAL
 from sgcad_core.planner.later_courses import runs_on, with_run
-from sgcad_core.planner.long_things import is_long
+from sgcad_core.planner.long_things import runs_along
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
@@ -181,7 +181,7 @@ class Ending:
         """Places a thing on the way of its vehicle, or on another one that it can take; a note where it is missed. What
         stays where it stands is beside the road, unless the vehicle is told to rest on the road. `ends`: the cost of
         the rest as settled, and the number of contacts that follow."""
-        along = is_long(size_m(strike.thing))
+        along = runs_along(strike.thing)
         beside = strike.thing.stays and (along or told.rest.where not in ("road", "intersection"))
         placed = along and self._is_met(strike, surface, ends, on_road=False, as_told=True)
         placed = placed or (beside and self._is_met(strike, surface, ends, on_road=False))

@@ -12,13 +12,21 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import SIDES, Floats, Size, gaps_where_near
 from sgcad_core.planner.actor_plan import is_beside
+from sgcad_core.planner.aftermath.rails import (
+    ANOTHER_SIDE,
+    DEPTH_M,
+    OUTWARD_MPS,
+    SLANTED,
+    along_road,
+    along_way,
+    stands_on_road,
+)
 from sgcad_core.planner.aftermath.second_contact import first_sides
 from sgcad_core.planner.aftermath.told_order import ToldOrder, touched
-from sgcad_core.planner.long_things import beside, corner_side, hand_of_side, is_long, meeting_angle, turned_to
+from sgcad_core.planner.long_things import runs_along
 from sgcad_core.planner.motion import STEP_S, standing_at
 from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.records.specs import Actor, Area, size_m
@@ -30,8 +38,6 @@ _BETWEEN = 3
 """Samples between the last contact and this one."""
 _LEAST_MPS = 2.6
 """A slower impact is hardly one, and files whose vertices lie 0.11 m apart cannot show it."""
-_DEPTH_M = 0.05
-"""Overlap of the undisturbed box with the object at the sample of the impact."""
 _GRAZE_M = 0.02
 """Overlap of a flank with what it scrapes: deeper, the corner ahead of it would meet the thing head on."""
 _PASSED = 0.6
@@ -45,18 +51,12 @@ _OTHER_SIDE = 1.0
 _FURTHER, _ALL_PLACES = 2, 99
 """Places at which it is struck that are tried behind the first one, where further contacts follow and where not."""
 _PAST_M = (6.0, 10.0, 16.0, 25.0, 40.0, 60.0)
-_OFF_ROAD_M = 0.3
 _GENTLE_MPS = 0.8
 """Taken where the vehicle is no faster any more."""
 _ON_ROAD, _LEFT_OUT = 10, 99
 """Rank of what stands on the road over the same beside it; that of places that are not tried."""
 _RANKS = 2
 """Kinds of places (on or off the road, before the told side or another one) that are tried."""
-_FLARES, _ANOTHER_SIDE, _SLANTED = ((0.0, 0), (8.0, 1), (-8.0, 1), (16.0, 2), (-16.0, 2)), 3, 4
-"""Angles to the road at which a long thing may run, degrees, with their ranks; the rank of one along the road that is
-met with another side than told, and that from which on one stands across: the last resort."""
-_OUTWARD_MPS = 0.5
-"""Outward speed of a side of the box that can strike an object."""
 _LATE, _EARLY = (0.95, 0.7, 0.45, 0.2), (0.1, 0.25, 0.4, 0.6)
 """Places to try, as shares of those with a visible impact: early where further contacts follow, and among many of them
 at the place that leaves each an equal share of the way."""
@@ -113,7 +113,7 @@ def place_thing(
     best: tuple[float, Track] | None = None
     further = _FURTHER if more else _ALL_PLACES
     for rank, pose in _poses(scene, strike, surface, order.after, more=more):
-        if as_told and rank >= _ANOTHER_SIDE:
+        if as_told and rank >= ANOTHER_SIDE:
             continue
         if not on_road and stands_on_road(surface, pose[None], size_m(strike.thing))[0]:
             continue
@@ -172,19 +172,20 @@ def _stand(scene: Scene, strike: Strike, pose: Floats) -> Track:
 
 # ------------------------------------------------------------------ where
 def _places(scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, more: int) -> list[tuple[int, Floats]]:
-    """Ranks and (3,) poses on the way of the vehicle, best first: off the road before on it, the stated side first."""
+    """Ranks and (3,) poses on the way of the vehicle, best first: off the road before on it, pieces on it before off
+    it, the stated side first."""
     size, track = size_m(strike.thing), scene.tracks[strike.by]
     samples = _samples(scene, strike, track, after)
-    near = _along_road(track, samples, strike, surface) if is_long(size) else iter(())
+    near = along_road(track, samples, strike.side, size, surface) if runs_along(strike.thing) else iter(())
     ranked = ((rank, pose, int(k)) for k in samples for rank, pose in _beside(track, int(k), strike, size))
     found = [(rank, pose) for rank, pose, k in (*near, *ranked) if _is_free(scene, strike, pose, size, k)]
     if not found:
         return []
     poses = np.array([pose for _, pose in found])
-    on_road = stands_on_road(surface, poses, size)
+    on_road = stands_on_road(surface, poses, size) != strike.thing.loose
     ranks = np.array([rank for rank, _ in found]) + _ON_ROAD * on_road
-    if is_long(size) and (ranks < _SLANTED).any():
-        ranks[ranks >= _SLANTED] = _LEFT_OUT
+    if runs_along(strike.thing) and (ranks < SLANTED).any():
+        ranks[ranks >= SLANTED] = _LEFT_OUT
     shares = (0.6 / (more + 1), *_EARLY) if more else _LATE
     ordered: list[tuple[int, Floats]] = []
     for rank in np.unique(ranks[ranks < _LEFT_OUT])[:_RANKS]:
@@ -192,17 +193,6 @@ def _places(scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, m
         at = dict.fromkeys(round(share * (len(chosen) - 1)) for share in shares)
         ordered += [(int(rank) % _ON_ROAD, poses[chosen[i]]) for i in at]
     return ordered
-
-
-def stands_on_road(surface: RoadSurface, poses: Floats, size: Size) -> NDArray[np.bool_]:
-    """(n,) whether a thing at (n, 3) poses stands on the road: of a long one any part."""
-    off: Floats = surface.off(poses[:, :2])[0]
-    if not is_long(size):
-        return off <= _OFF_ROAD_M
-    across = np.column_stack((-np.sin(poses[:, 2]), np.cos(poses[:, 2])))
-    for share in (-0.5, 0.5):
-        off = np.minimum(off, surface.off(poses[:, :2] + share * size[1] * across)[0])
-    return off <= 0.0
 
 
 def _samples(scene: Scene, strike: Strike, track: Track, after: int) -> Floats:
@@ -224,12 +214,12 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
     for number, side in enumerate(SIDES):
         out = heading + number * math.pi / 2
         outward = (by[0] * math.cos(out) + by[1] * math.sin(out)) / STEP_S
-        grazes = side == strike.side and is_beside(side) and abs(outward) < _OUTWARD_MPS
-        if outward < _OUTWARD_MPS and not grazes:
+        grazes = side == strike.side and is_beside(side) and abs(outward) < OUTWARD_MPS
+        if outward < OUTWARD_MPS and not grazes:
             continue
-        if is_long(size) and side != "back":
-            rank = _SLANTED + (side != strike.side and strike.side is not None)
-            yield from ((rank, pose) for pose in _along(track, k, side, size))
+        if runs_along(strike.thing) and side != "back":
+            rank = SLANTED + (side != strike.side and strike.side is not None)
+            yield from ((rank, pose) for pose in along_way(track, k, side, size))
             continue
         if grazes:
             yield 0, _grazed(track, k, out, size)
@@ -237,7 +227,7 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
         if strike.glances and number % 2:
             continue
         depth, width = (max(size), min(size)) if strike.glances else size
-        reach = track.size[number % 2] / 2 + depth / 2 - min(_DEPTH_M, outward * STEP_S)
+        reach = track.size[number % 2] / 2 + depth / 2 - min(DEPTH_M, outward * STEP_S)
         leads = outward > 0.7 * math.hypot(by[0], by[1]) / STEP_S
         rank = 0 if side == strike.side or (strike.side is None and leads) else 1 if leads else 2
         left = strike.asides[0] * track.size[1 - number % 2]
@@ -258,36 +248,6 @@ def _grazed(track: Track, k: int, out: float, size: Size) -> Floats:
     reach = track.size[1] / 2 + size[0] / 2 - _GRAZE_M
     x, y = x + ahead * math.cos(heading), y + ahead * math.sin(heading)
     return np.array([x + reach * math.cos(out), y + reach * math.sin(out), out])
-
-
-def _along_road(
-    track: Track, samples: Floats, strike: Strike, surface: RoadSurface
-) -> Iterator[tuple[int, Floats, int]]:
-    """(rank, pose, sample) of a long thing that runs along the nearest road, or nearly: first where the vehicle comes
-    to it with the stated side, last along the road where another side meets it."""
-    size = size_m(strike.thing)
-    poses = track.poses[samples.astype(int)]
-    by = (poses - track.poses[samples.astype(int) - 1])[:, :2] / STEP_S
-    roads = surface.part([n for n, lane in enumerate(surface.lanes) if lane != "junction"])
-    _, _, nearest = roads.nearest(poses[:, :2])
-    for k, pose, speed, way in zip(samples.astype(int), poses, by, roads.ways[nearest], strict=True):
-        outward = float(speed[1] * math.cos(way) - speed[0] * math.sin(way))
-        if abs(outward) <= _OUTWARD_MPS:
-            continue
-        for flare_deg, rank in _FLARES:
-            away = float(way) + math.copysign(math.pi / 2, outward) + math.radians(flare_deg)
-            told = strike.side in (None, corner_side(pose, track.size, away))
-            if told or not flare_deg:
-                rank = rank if told else _ANOTHER_SIDE
-                yield rank, beside(pose, track.size, size, away + math.pi, _DEPTH_M), int(k)
-
-
-def _along(track: Track, k: int, side: Area, size: Size) -> Iterator[Floats]:
-    """The poses of a long thing that runs along the road, before a side of the box on one hand or the other."""
-    pose = track.poses[k]
-    for hand in hand_of_side(side, 0):
-        heading = float(pose[2]) + turned_to(hand, meeting_angle(side))
-        yield beside(pose, track.size, size, heading, _DEPTH_M)
 
 
 def _is_free(scene: Scene, strike: Strike, pose: Floats, size: Size, until: int) -> bool:

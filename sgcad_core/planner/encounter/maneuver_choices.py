@@ -15,7 +15,7 @@ from sgcad_core.planner.encounter.pacing_choices import from_another_road
 from sgcad_core.planner.encounter.ways_off_road import departures, eased
 from sgcad_core.planner.lines.box_angles import SKIDS, STEERS
 from sgcad_core.planner.lines.crossing import LEAVES, brushing, crossings, end_meets_flank
-from sgcad_core.planner.lines.departures import DEPARTURES, aside_m, change_of_line, departs
+from sgcad_core.planner.lines.departures import DEPARTURES, GENTLY, aside_m, change_of_line, departs
 from sgcad_core.planner.lines.lost_control import lost_lines
 from sgcad_core.planner.lines.told_moves import last_move, with_earlier
 from sgcad_core.planner.lines.turning import corner_lines
@@ -30,6 +30,8 @@ OTHER_LANE_COST = 1.0
 """More than another speed: a told lane is taken wherever the two can meet from it."""
 _SHARES = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
 """Shares of the shift of a maneuver with their costs."""
+_ABREAST_M = 12.0
+"""Way in the lane beside before one that overtakes meets what it overtakes."""
 _GENTLE = 0.2
 """Cost of a gentle change of line where a steep one is needed."""
 _SWERVES, _OFF_COURSE = "swerves", "leaves its course"
@@ -80,6 +82,8 @@ def _lines(role: Role, *, fine: bool) -> list[Drift]:
         if role.spins or role.glances:
             shares = [(0.63, 0.0), (1.37, 0.05), (1.0, 0.1), *shares[1:]]
         shares = shares if fine else [shares[0], shares[3], shares[4]]
+        if role.actor.maneuver == "overtaking" and end_meets_flank(role):
+            return _behind([*_passing(role, wanted)], [*steep, *_shifts(role, wanted, shares), Drift(0.8)])
         return [*_behind(steep, [*_shifts(role, wanted, shares), *_far_over(role, shares)]), Drift(0.8)]
     near = [*_to_parked(role), *brushing(role), *(_in_lane(role) if fine else [])]
     if evading := _evading(role):
@@ -118,6 +122,13 @@ def _shifts(role: Role, left_m: float, shares: Sequence[tuple[float, float]]) ->
     """Shares of a shift with their costs: gently, and the first three also hard and sharply."""
     for share, cost, ease in eased(shares):
         yield change_of_line(role, left_m * share, cost, ease)
+
+
+def _passing(role: Role, wanted: float) -> Iterator[Drift]:
+    """Ways into the lane beside that are over before the place: what is overtaken is met from there."""
+    for share, cost in ((1.0, 0.0), (0.85, 0.05), (1.15, 0.1)):
+        line = change_of_line(role, wanted * share, cost, GENTLY)
+        yield line._replace(end_m=line.end_m - _ABREAST_M)
 
 
 def _far_over(role: Role, shares: Sequence[tuple[float, float]]) -> Iterator[Drift]:

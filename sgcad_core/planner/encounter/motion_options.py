@@ -36,7 +36,7 @@ from sgcad_core.planner.lines.box_angles import aiming, skids, slides, spins
 from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.path import Path, ramp, ramp_length_m, widened_bends
 from sgcad_core.planner.lines.turning import corner_lines
-from sgcad_core.planner.long_things import corner_m, is_long
+from sgcad_core.planner.long_things import corner_m, runs_along
 from sgcad_core.planner.motion import HARD_MPS2, Motion, Pace, drive, stand
 from sgcad_core.planner.stationary_actors import (
     any_angle,
@@ -255,7 +255,7 @@ def in_the_way(option: Option, other: Option) -> Motion:
     """Places for an object along the line that another actor takes, `left_m` beside it; a long one faces the road, not
     the box that comes, and lies beside the corner that meets it."""
     path, road, role = other.motion.path, other.role.course.path, option.role
-    if is_long(role.size):
+    if runs_along(role.actor):
         along = np.interp(path.s_m, road.s_m, road.heading_rad)
         out = along + option.twist.angle_rad + (facing(role.side) if role.side else 0.0) + math.pi
         reach = corner_m(other.role.size, other.role.side) + role.size[0] / 2

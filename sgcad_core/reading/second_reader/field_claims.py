@@ -223,3 +223,14 @@ def by_id(sides: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
 def vehicles_of(crash: CrashFacts) -> frozenset[str]:
     """Ids of all actors that the rules know."""
     return frozenset([*(v.id for v in crash.vehicles), *(o.id for o in crash.others)])
+
+
+def departures_past_the_road(heard: Claims, crash: CrashFacts) -> set[str]:
+    """Keys of departures from the road of vehicles that first strike what lies in it."""
+    lying, found = {other.id for other in crash.others if other.lies}, set()
+    for vehicle in crash.vehicles:
+        first, key = crash.first_contact(vehicle.id), f"maneuver.{vehicle.id}"
+        departs = key in heard and str(heard[key].value).startswith("departing")
+        if departs and first is not None and first.struck in lying:
+            found.add(key)
+    return found

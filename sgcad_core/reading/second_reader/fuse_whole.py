@@ -26,7 +26,14 @@ from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts, uncounted
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.second_reader.answered_values import TakenValue, as_taken, controlled, facts_of, model_claims
 from sgcad_core.reading.second_reader.combiner import FILLS, model_right, needed
-from sgcad_core.reading.second_reader.field_claims import Claim, Claims, kind_of, rules_claim, vehicles_of
+from sgcad_core.reading.second_reader.field_claims import (
+    Claim,
+    Claims,
+    departures_past_the_road,
+    kind_of,
+    rules_claim,
+    vehicles_of,
+)
 from sgcad_core.reading.second_reader.fuse_numbered import moved
 from sgcad_core.reading.second_reader.learned_support import support_of
 from sgcad_core.records.facts import Fact
@@ -72,9 +79,11 @@ def fused_with_answer(reading: Reading, opinion: Opinion) -> Reading:
 
 
 def _sayable(heard: Claims, crash: CrashFacts) -> Claims:
-    """The claims without kinds of those that the rules read as a kind of which the embedded model knows no word."""
+    """The claims without kinds of those that the rules read as a kind of which the embedded model knows no word, and
+    without departures of vehicles that first strike what lies in the road."""
     kinds = {v.id: v.kind for v in crash.vehicles} | {other.id: other.kind for other in crash.others}
     beyond = {f"kind.{name}" for name, kind in kinds.items() if not actor_kind(kind).learned}
+    beyond |= departures_past_the_road(heard, crash)
     return {key: claim for key, claim in heard.items() if key not in beyond}
 
 
