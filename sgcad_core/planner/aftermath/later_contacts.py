@@ -11,7 +11,9 @@ from functools import partial
 from itertools import islice
 from typing import NamedTuple, Protocol
 
-from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit, leaving_the_road
+from sgcad_core.kinds import actor_kind
+from sgcad_core.planner.aftermath.rest_candidates import odd_ways
+from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit
 from sgcad_core.planner.aftermath.second_contact import MISSED
 from sgcad_core.planner.aftermath.struck_objects import Strike, leave_beside, place_thing
 from sgcad_core.planner.aftermath.told_order import ToldOrder, pair_of
@@ -108,6 +110,13 @@ def _off_middle(strike: Strike, course: CourseTold) -> Strike:
     return replace(strike, asides=(-USUAL / 2, USUAL / 2) if both else (-USUAL / 2,))
 
 
+def leaving_the_road(course: CourseTold) -> CourseTold:
+    """The stated course of a vehicle that strikes an object beside the road: without a stated place it leaves the
+    road."""
+    where = course.rest.where or "off_road"
+    return replace(course, rest=replace(course.rest, where=where))
+
+
 def _on_the_way(told: Courses, rolling: frozenset[str]) -> Courses:
     """The stated courses of vehicles as they come to what they strike: how they face at rest follows from that, but for
     those that come to rest against it."""
@@ -144,6 +153,8 @@ class Ending:
         scene, touched = self.scene, {name for touch in self.scene.touches for name in (touch.first, touch.second)}
         rolling = frozenset(strike.by for strike in self.strikes.values() if strike.by in touched)
         told = {name: courses[name] for name in scene.tracks if name in courses}
+        for name in self._turning_on_the_spot(surface):
+            told.setdefault(name, CourseTold())
         passed: list[tuple[Strike, int]] = []
         if not told and not rolling and not scene.again:
             notes = list(self._then(courses, surface, lambda: 0.0, passed))
@@ -157,6 +168,12 @@ class Ending:
         rests = RestFit(scene, told, surface, rolling, impacts, self.order)
         rests.finish()
         return Ended((*notes, *rests.missed()), rests.cost() + MISSED * len(notes), tuple(passed))
+
+    def _turning_on_the_spot(self, surface: RoadSurface) -> list[str]:
+        """Vehicles that turn on the spot behind the first contact, as no wreck does."""
+        tracks = {name: t for name, t in self.scene.tracks.items() if t.hit is not None and actor_kind(t.kind).wheeled}
+        ways = {name: track.poses[self.scene.contact :, None] for name, track in tracks.items()}
+        return [name for name, way in ways.items() if odd_ways(CourseTold(), way, surface)[0] > 0.0]
 
     def _then(
         self, courses: Courses, surface: RoadSurface, cost: Callable[[], float], passed: list[tuple[Strike, int]]
