@@ -16,7 +16,7 @@ from sgcad_core.planner.aftermath.rest_candidates import odd_ways
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit
 from sgcad_core.planner.aftermath.second_contact import MISSED
 from sgcad_core.planner.aftermath.struck_objects import Strike, leave_beside, place_thing
-from sgcad_core.planner.aftermath.told_order import ToldOrder, pair_of
+from sgcad_core.planner.aftermath.told_order import Pair, ToldOrder, pair_of
 from sgcad_core.planner.encounter.off_center import NARROW_M, SHARES, USUAL
 from sgcad_core.planner.later_courses import runs_on, with_run
 from sgcad_core.planner.long_things import runs_along
@@ -91,11 +91,13 @@ def expect_later_contacts(scene: Scene, contacts: Sequence[Contact]) -> None:
     """Sets the pairs of a scene that touch after the first contact, and those that touch a second time."""
     first = {pair_of(contact) for contact in contacts[:1]}
     further = frozenset(pair_of(contact) for contact in contacts[1:])
-    scene.again, scene.told = further & first, further - first
-    for contact in contacts[1:]:
-        if pair_of(contact) in scene.again:
+    met: set[Pair] = set()
+    for contact in contacts:
+        if (pair := pair_of(contact)) in met:
             sides = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
-            scene.sides.setdefault(pair_of(contact), sides)
+            scene.sides.setdefault(pair, sides)
+        met.add(pair)
+    scene.again, scene.told = frozenset(scene.sides), further - first
 
 
 def _off_middle(strike: Strike, course: CourseTold) -> Strike:
@@ -139,7 +141,7 @@ class Ending:
     ) -> None:  # fmt: skip
         self.scene, self.order, self.meet = scene, order, meet
         self.strikes = {strike.thing.id: strike for strike in strikes_of(behavior, contacts)}
-        further = [c for c in contacts[1:] if pair_of(c) not in scene.again]
+        further = [c for c in contacts[1:] if pair_of(c) != pair_of(contacts[0])]
         at = next((n for n, c in enumerate(further) if c.struck in self.strikes), len(further))
         self.before, self.then = further[:at], further[at:]
 
@@ -202,7 +204,12 @@ class Ending:
         beside = strike.thing.stays and (along or told.rest.where not in ("road", "intersection"))
         placed = along and self._is_met(strike, surface, ends, on_road=False, as_told=True)
         placed = placed or (beside and self._is_met(strike, surface, ends, on_road=False))
-        if not placed and not self._is_met(strike, surface, ends, on_road=True):
+        if placed:
+            return
+        if self._is_met(strike, surface, ends, on_road=True):
+            if along:
+                yield f"{strike.thing.id} stands in the lanes, where nothing runs along the road"
+        else:
             leave_beside(self.scene, strike)
             yield f"{strike.by} does not reach {strike.thing.id}, which it strikes as told"
 

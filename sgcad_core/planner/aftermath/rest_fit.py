@@ -173,7 +173,7 @@ class RestFit:
         free = [name for name in self.wanted if wreck.named[name].free and not wreck.named[name].fixed]
         told = scene.sides.get(frozenset(free), {})
         sides = (told.get(free[0]), told.get(free[-1])) if free else (None, None)
-        found = BlowWays(friction, restitution, bool(scene.again), sides)
+        found = BlowWays(friction, restitution, any(pair <= set(free) for pair in scene.again), sides)
         if not free:
             return found
         at_s, end_s = until * STEP_S, (scene.count - 4) * STEP_S

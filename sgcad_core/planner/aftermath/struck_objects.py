@@ -80,7 +80,8 @@ class Strike:
     @property
     def glances(self) -> bool:
         """Whether the vehicle goes on past a thing that stays."""
-        return self.goes_on and self.thing.firm and (self.side is None or not is_beside(self.side))
+        passes = self.side is None or not is_beside(self.side)
+        return self.goes_on and self.thing.firm and passes and not runs_along(self.thing)
 
 
 def leave_beside(scene: Scene, strike: Strike) -> None:

@@ -45,6 +45,8 @@ _FLAT = frozenset(("curb", "curbing", "median", "island", "ditch", "hole", "poth
 """Things on or in the ground: a vehicle drives over them, and they stay."""
 _USUAL_M, _FALLEN_M = (0.4, 0.4), (0.5, 7.0)
 """Depth and width of other things, and of one that has fallen across the road."""
+_LEAST_RUN_M = 4.0
+"""Width from which a thing is so long that it can be struck twice."""
 _LONG_M = 1.5
 """Width from which a thing stands along the road."""
 
@@ -64,7 +66,8 @@ def with_roadside(
         driver = next((a for a in actors if a.id == vehicle), None)
         if driver is None or len(joined) >= most[0] or len(told.further) + len(contacts) >= most[1]:
             continue
-        joined.append(_standing(other, driver, endwise=_is_met_endwise(impact, contacts)))
+        if all(a.id != other.id for a in joined):
+            joined.append(_standing(other, driver, endwise=_is_met_endwise(impact, contacts)))
         words[other.id] = other.word
         told.add(impact.after, Contact(
             striker=vehicle, struck=other.id, striker_area=impact.actor_area or leading_end(driver.maneuver),
@@ -130,12 +133,26 @@ def _once_more(impact: ImpactTold, first: Contact) -> Contact:
 def _struck(facts: CrashFacts, taken: set[str]) -> Iterator[tuple[str, OtherFacts, ImpactTold]]:
     """(vehicle, what it strikes, as told), in order; the first contact of a lone vehicle is none of these."""
     taken, pairs = set(taken), {v.id for v in facts.vehicles}
+    met: dict[tuple[str, str], tuple[OtherFacts, ImpactTold]] = {}
     for number, impact in enumerate(facts.impacts):
         if impact.other in pairs or (number == 0 and impact.other == _first_thing(facts)):
             continue
-        other = _known(facts, impact.other, taken)
+        before = met.get((impact.actor, impact.other))
+        same = before[0] if before and _runs_on(before[1], impact) else None
+        other = same or _known(facts, impact.other, taken)
         taken.add(other.id)
+        met[impact.actor, impact.other] = other, impact
         yield impact.actor, other, impact
+
+
+def _runs_on(before: ImpactTold, impact: ImpactTold) -> bool:
+    """Whether a vehicle strikes one thing that runs along the road a second time, with another side."""
+    size = _SIZE_M.get(impact.other.split()[-1], _USUAL_M)
+    return (
+        size[1] > _LEAST_RUN_M
+        and None not in (before.actor_area, impact.actor_area)
+        and (before.actor_area != impact.actor_area)
+    )
 
 
 def _first_thing(facts: CrashFacts) -> str | None:
