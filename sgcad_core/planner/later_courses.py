@@ -29,6 +29,8 @@ _APART_S = 0.2
 """Time after the last contact from which on the next one is looked for."""
 _PER_S, _OTHER_SIDE = 0.05, 2.0
 """Cost of a contact that comes later, and of one with another side than told."""
+_PARTED_M = 0.06
+"""Gap beyond which two touch anew."""
 _STEERS_PER_M = (0.03, 0.06, 0.1)
 """Bends of the ways on which a vehicle is led towards the stated sides of a further contact."""
 _SOON, _GOES_ON_M = 4, 5.0
@@ -115,7 +117,8 @@ def _first_meetings(scene: Scene, pair: tuple[str, str], ways: Floats, from_samp
     steps = np.arange(len(ways))
     theirs = other.poses[np.minimum(from_sample + _COARSE * (steps + 1), scene.count - 1)]
     every = np.repeat(theirs[:, None], ways.shape[1], axis=1)
-    gaps = gaps_where_near(ways.reshape(-1, 3), own.size, every.reshape(-1, 3), other.size).reshape(ways.shape[:2])
-    met = gaps <= 0.0
+    gaps = gaps_where_near(ways.reshape(-1, 3), own.size, every.reshape(-1, 3), other.size, _PARTED_M)
+    gaps = gaps.reshape(ways.shape[:2])
+    met = (gaps <= 0.0) & np.maximum.accumulate(gaps > _PARTED_M, axis=0)
     met[: round(_APART_S / STEP_S / _COARSE)] = False
     return np.where(met.any(axis=0), met.argmax(axis=0), -1)

@@ -20,7 +20,7 @@ from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 STEP_M = 0.5
 TURN_BACK_M = 5.6
 """Radius of the rear axle in a U-turn: that of a car with a turning circle of about 11 m between curbs."""
-_SWING_OUT_M = 0.4
+_SWING_OUT_M = 0.8
 """How far a vehicle swings to the right within its lane before such a turn."""
 EXTENSION_M = 320.0
 """Straight run before and behind the drawn line: 9 s at 80 mph."""
@@ -242,7 +242,7 @@ def turned_back(start: Floats, start_rad: float, end: Floats, radius_m: float = 
     gap = max(float((end - start) @ np.array([-s, c])), 0.0)
     wide = max(radius_m, gap / 2)
     near = gap / (2 * wide)
-    out = min(math.acos(min(max((near + 1) / 2, 0.0), 1.0)), math.acos(1 - _SWING_OUT_M / wide))
+    out = min(math.acos(min(max((near + 1) / 2, 0.0), 1.0)), math.acos(1 - _SWING_OUT_M / (2 * wide)))
     back = math.acos(min(max(near + 1 - math.cos(out), -1.0), 1.0))
     turns = np.array([-out, math.pi + out + back, -back])
     bends = [np.full(max(2, math.ceil(abs(a) * wide / STEP_M)), a) for a in turns if abs(a) > 1e-6]
