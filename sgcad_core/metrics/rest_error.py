@@ -135,7 +135,7 @@ def _misplaced(
     """Distance from the stated kind of place, metres; 0 or less is right."""
     off, bearing, nearest = near
     if told.where == "road":
-        return off - OFF_M
+        return surface.streets.off(poses[:, :2])[0] - OFF_M
     if told.where == "shoulder":
         return np.maximum(SHOULDER_M[0] - off, off - SHOULDER_M[1])
     if told.where == "intersection" and surface.junctions:

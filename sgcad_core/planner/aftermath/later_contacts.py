@@ -206,7 +206,8 @@ class Ending:
         placed = placed or (beside and self._is_met(strike, surface, ends, on_road=False))
         if placed:
             return
-        if self._is_met(strike, surface, ends, on_road=True):
+        aside = along and told.rest.where in ("off_road", "shoulder", "median")
+        if not aside and self._is_met(strike, surface, ends, on_road=True):
             if along:
                 yield f"{strike.thing.id} stands in the lanes, where nothing runs along the road"
         else:
