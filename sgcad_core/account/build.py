@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
-from sgcad_core.account.actors import actor_items
 from sgcad_core.account.assumed import assumed_items
-from sgcad_core.account.contacts import contact_items
+from sgcad_core.account.contacts import actor_items, contact_items
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.motion import motion_items
 from sgcad_core.account.notes import Note

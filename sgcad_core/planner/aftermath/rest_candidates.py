@@ -57,8 +57,8 @@ _SOON = 40
 """Steps of the run-outs that are compared: 4 s, later they hardly move."""
 _IN_EACH_OTHER_M = 0.25
 """Run-outs on which two boxes would overlap so deep are excluded: they push each other elsewhere."""
-_ON_THE_SPOT, _SPOT_RAD = 0.7, math.radians(85.0)
-_LEAVES, _LEAVES_M, _SEEN = 0.8, 0.8, 12
+_ON_THE_SPOT, _SPOT_RAD = 0.5, math.radians(85.0)
+_LEAVES, _LEAVES_M, _SEEN = 0.4, 0.8, 12
 """Cost of a rotation on the spot; of a way off the road before a rest on it, from how far on, and the poses of a way
 that are looked at. Both are less than a missed part of what is told."""
 UNUSUAL = 0.02

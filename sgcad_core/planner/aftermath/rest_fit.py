@@ -67,7 +67,7 @@ _FACING_SCALE_RAD, _PLACE_SCALE_M = math.radians(45.0), 5.0
 _TOLD, _USUAL_SHARE = 1.0, 0.6
 """Cost of a missed part; share of the friction: some braking, some dragging wheels."""
 _SPIN_RAD, _MOST_UNTOLD_RAD, _WHIRLS = math.radians(15.0), math.radians(200.0), 1.3
-_MOST_SPIN_RAD = math.radians(300.0)
+_MOST_SPIN_RAD = math.radians(320.0)
 """The most of a told rotation without told degrees."""
 
 
@@ -187,7 +187,8 @@ class RestFit:
         each = run_out_paths(released, drags, runs, end_s, _COARSE_S)
         for name, drag, mine, ways in zip(free, drags, runs, each, strict=True):
             odd = oddities(mine, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE) + loops(ways, _COARSE_S)
-            odd = odd + odd_ways(self.wanted[name], ways, self.surface)
+            if not scene.again:  # there are few ways to a second contact
+                odd = odd + odd_ways(self.wanted[name], ways, self.surface)
             judge = partial(self._costs, name, self.wanted[name])
             found.vehicles[name] = VehicleWays(mine, ways, odd, judge, scene.tracks[name].size)
         return found

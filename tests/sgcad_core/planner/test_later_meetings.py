@@ -9,12 +9,11 @@ import pytest
 
 from sgcad_core.geometry.plane import Box, box_gaps, contact_area
 from sgcad_core.planner import Plan, plan
-from sgcad_core.records.course import CourseTold, RestTold
+from sgcad_core.planner.aftermath.later_contacts import expect_later_contacts, strikes_of
+from sgcad_core.planner.scene import Scene
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
-from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.surface import road_surface
 from tests.sgcad_core.planner.crash_scenes import network
-from tests.sgcad_core.planner.test_departures import roads
 
 
 def car(number: int, road: str, maneuver: str = "straight", **more: object) -> Actor:
@@ -127,19 +126,16 @@ def test_those_that_are_pushed_into_one_another_at_a_light_stand_before_the_junc
         assert junction.out_m(np.array([[one.x_m[0], one.y_m[0] + 2.3 - 1.0]]))[0] > 0.0, one.actor
 
 
-def four_lanes() -> LaneGraph:
-    return roads(lanes_in=4, lanes_out=4)
-
-
-def test_a_rail_is_struck_a_second_time() -> None:
+def test_a_rail_is_struck_a_second_time_with_another_side() -> None:
+    told = hits("V1 left V2 right", "V1 front O1 front", "V1 right O1 front")
+    scene = Scene(100, 40)
+    expect_later_contacts(scene, told)
+    pair = frozenset(("V1", "O1"))
+    assert scene.again == {pair}
+    assert scene.sides[pair] == {"V1": "right", "O1": "front"}
     rail = Actor(id="O1", kind="object", road="S", direction="forward", maneuver="stopped", length_m=0.6,
                  width_m=14.0, firm=True)  # fmt: skip
-    cars = (car(1, "S", "lane_change_left", lane=3), car(2, "S", lane=4), rail)
-    told = ("V1 left V2 right", "V1 front O1 front", "V1 right O1 front")
-    behavior = BehaviorSpec(actors=cars, contacts=hits(*told))
-    courses = {"V1": CourseTold(spin="counterclockwise", rest=RestTold(where="off_road", side="left"))}
-    made = plan(behavior, four_lanes(), courses=courses)
-    poses, sizes = {t.actor: t.pose for t in made.trajectories}, {a.id: size_m(a) for a in behavior.actors}
-    gaps = box_gaps(poses["V1"], sizes["V1"], poses["O1"], sizes["O1"])
-    begins = np.flatnonzero((gaps <= 0) & (np.roll(gaps, 1) > 0))
-    assert len(begins) > 1, made.notes
+    cars = (car(1, "S", "lane_change_left"), car(2, "S"), rail)
+    (strike,) = strikes_of(BehaviorSpec(actors=cars, contacts=told), told)
+    assert strike.goes_on
+    assert not strike.glances, "the vehicle passes through it"
