@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
-from sgcad_core.account.actors import actor_items
 from sgcad_core.account.assumed import assumed_items
-from sgcad_core.account.contacts import contact_items
+from sgcad_core.account.contacts import actor_items, contact_items
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.motion import motion_items
 from sgcad_core.account.notes import Note
+from sgcad_core.account.odd_scenes import odd_scenes
 from sgcad_core.account.places import map_items, place_items
 from sgcad_core.account.records import Account, Disagreement, Item
 from sgcad_core.account.second_opinion import weighed
@@ -48,6 +48,7 @@ def account_of(
         return NOTHING.model_copy(update={"disagreements": tuple(asked)})
     told, differing = weighed(made, [*_told(made), *_limits(notes)], asked, models)
     told += [*odd_driving(made, notes), *untold_swerves(made, notes), *places(made), *unread_clauses(made)]
+    told += odd_scenes(made)
     told += [*contradictions(made), *guesses(made)]
     ranked = sorted(told, key=lambda item: ORDER.index(item.kind))
     items = (*ranked, *assumed_items(made, facts))

@@ -7,6 +7,7 @@ radians counter-clockwise from east unless a name says otherwise; metres.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +29,8 @@ SIDE_RAD = math.radians(68.0)
 right."""
 SPINS_RAD = math.radians(8.0)
 """Rotation after its first contact from which a vehicle spins."""
+_SPOT_M, _LAGS = 3.5, (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)
+"""Way on which a rotation is one on the spot; samples between two poses that are compared."""
 SHOULDER_M = (0.0, 4.0)
 """Distances beyond the edge of the nearest lane of a box center on a shoulder."""
 OFF_M = 0.0
@@ -89,6 +92,16 @@ def rest_errors(
     return RestErrors(facing, where, side, _beside_lane(told, poses, came_rad, surface, began))
 
 
+def whirls(ways: Floats) -> Floats:
+    """(n,) the most by which (m, n, 3) ways turn within a few metres: on the spot, as no sliding vehicle does."""
+    gone = np.cumsum(np.hypot(*np.diff(ways[..., :2], axis=0, prepend=ways[:1, :, :2]).transpose(2, 0, 1)), axis=0)
+    most = np.zeros(ways.shape[1])
+    for lag in (n for n in _LAGS if n < len(ways)):
+        turned = np.abs(ways[lag:, :, 2] - ways[:-lag, :, 2])
+        most = np.maximum(most, np.where(gone[lag:] - gone[:-lag] <= _SPOT_M, turned, 0.0).max(axis=0))
+    return most
+
+
 def near_m(distance_m: float) -> float:
     """By how much a distance may differ from one that is told."""
     if distance_m == AT_IMPACT_M:
@@ -122,7 +135,7 @@ def _misplaced(
     """Distance from the stated kind of place, metres; 0 or less is right."""
     off, bearing, nearest = near
     if told.where == "road":
-        return off - OFF_M
+        return surface.streets.off(poses[:, :2])[0] - OFF_M
     if told.where == "shoulder":
         return np.maximum(SHOULDER_M[0] - off, off - SHOULDER_M[1])
     if told.where == "intersection" and surface.junctions:
@@ -206,3 +219,22 @@ def _beside(
         seen = _apart(np.arctan2(dy, dx), wanted)
         best = np.where(near, np.where(across, np.minimum(best, seen), seen * SIDE_RAD / _CORNER_RAD), best)
     return best
+
+
+def in_words(rest: RestTold, errors: RestErrors) -> Iterator[str]:
+    """The missed parts of a rest, for people."""
+    facing, where, side, lane = errors
+    if facing is not None and facing[0] > 0:
+        off = math.degrees(float(facing[0]) + FACING_RAD)
+        yield f"comes to rest facing {off:.0f} degrees off what is told"
+    if where is not None and where[0] > 0:
+        yield f"comes to rest {float(where[0]):.1f} m from the told place ({(rest.where or '').replace('_', ' ')})"
+    if side is not None and side[0] > 0:
+        yield f"comes to rest on another side than told ({rest.side})"
+    if lane is not None and lane[0] > 0:
+        yield f"comes to rest {float(lane[0]):.1f} m from the told {_lane_in_words(rest)}"
+
+
+def _lane_in_words(rest: RestTold) -> str:
+    named = f"lane {rest.lane}" if isinstance(rest.lane, int) else f"{rest.lane or ''} lane".replace("_", " ")
+    return " ".join(filter(None, [named.strip(), f"({rest.lane_way})" if rest.lane_way else ""]))

@@ -72,8 +72,8 @@ class Role:
     """The evasion that the report states."""
     goes_on: bool = False
     """Whether it strikes something else after this contact."""
-    other_long: bool = False
-    """Whether the other one is a thing that runs along the road."""
+    other_long_m: float = 0.0
+    """Depth of the other one where it is a thing that runs along the road; 0 of others."""
     other_leaves: int = 0
     """The hand on which the other one leaves the road: 1 left, -1 right; 0: it stays on it."""
     untouched: bool = False  # touches nothing, and nothing is near it

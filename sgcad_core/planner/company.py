@@ -68,6 +68,8 @@ def with_company(
     found = dict(courses)
     if waits := _behind_one_that_backs(behavior):
         found[waits[0]] = replace(found[waits[0]], queued_m=found[waits[0]].queued_m + waits[1])
+    for name, queued_m in _room_of_queue(behavior):
+        found[name] = replace(found[name], queued_m=found[name].queued_m + queued_m)
     for actor in behavior.actors:
         leader = None if actor.record.walks or actor.maneuver == "slowing" else led_by(behavior, actor)
         if leader is None:
@@ -99,6 +101,26 @@ def _behind_one_that_backs(behavior: BehaviorSpec) -> tuple[str, float] | None:
     one_lane = (backs.road, backs.direction) == (stands.road, stands.direction)
     ahead = one_lane and (areas[backs.id], areas[stands.id]) == ("back", "front")
     return (stands.id, size_m(backs)[0] + BACKS_M) if ahead else None
+
+
+def _room_of_queue(behavior: BehaviorSpec) -> Iterator[tuple[str, float]]:
+    """The two of the first contact and the room of those that stand ahead of the struck one in its lane, into which it
+    is pushed one after the other."""
+    first, actors = behavior.first_meeting, {a.id: a for a in behavior.actors}
+    last = actors.get(first.struck) if first else None
+    if first is None or last is None or last.maneuver != "stopped":
+        return
+    room_m, there = 0.0, (last.road, last.direction, last.lane)
+    for c in behavior.contacts:
+        ahead = actors.get(c.struck)
+        bumper = (c.striker, c.striker_area, c.struck_area) == (last.id, "front", "back")
+        if ahead is None or not bumper or ahead.maneuver != "stopped" or not ahead.record.drives:
+            continue
+        if (ahead.road, ahead.direction, ahead.lane) == there:
+            room_m, last = room_m + size_m(ahead)[0] + GAP_M, ahead
+    for name in (first.struck, first.striker) if room_m else ():
+        if name in actors and actors[name].road == there[0]:
+            yield name, room_m
 
 
 def _lane_of(behavior: BehaviorSpec, leader: Actor) -> list[Actor]:

@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 from sgcad_core.geometry.plane import Floats, gaps_where_near
 from sgcad_core.planner.aftermath.ground_friction import Released, RunOut, run_out_paths
 from sgcad_core.planner.aftermath.rest_candidates import all_runs, loops, oddities
+from sgcad_core.planner.aftermath.second_contact import wrong_sides
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import Scene
+from sgcad_core.records.specs import Area
 from sgcad_core.roads.surface import RoadSurface
 
 _BLOW_S = 0.3
@@ -25,8 +27,10 @@ _COARSE = 2
 """Samples of the clock in a step of the run-outs."""
 _APART_S = 0.2
 """Time after the last contact from which on the next one is looked for."""
-_PER_S = 0.05
-"""Cost of a contact that comes later."""
+_PER_S, _OTHER_SIDE = 0.05, 2.0
+"""Cost of a contact that comes later, and of one with another side than told."""
+_PARTED_M = 0.06
+"""Gap beyond which two touch anew."""
 _STEERS_PER_M = (0.03, 0.06, 0.1)
 """Bends of the ways on which a vehicle is led towards the stated sides of a further contact."""
 _SOON, _GOES_ON_M = 4, 5.0
@@ -43,11 +47,18 @@ def with_run(scene: Scene, name: str, run: RunOut) -> dict[str, tuple[RunOut, ..
     return {**scene.runs, name: (*earlier, run)}
 
 
-def runs_into(scene: Scene, name: str, other: str, after: int) -> Iterator[RunOut]:
-    """Run-outs of a struck vehicle that lead into another actor behind a sample, the least odd ones first."""
+def runs_into(scene: Scene, name: str, other: str, after: int, side: Area | None = None) -> Iterator[RunOut]:
+    """Run-outs of a struck vehicle that lead into another actor behind a sample, with a side if any does so, the least
+    odd ones first."""
     if (found := run_outs(scene, name, after)) is not None:
         meets = _first_meetings(scene, (name, other), found.ways, found.sample)
-        yield from found.best(meets >= 0, _PER_S * meets * _COARSE * STEP_S)
+        wrong: Floats = np.zeros(len(meets))
+        if side is not None:
+            at = np.maximum(meets, 0)
+            own = found.ways[at, np.arange(len(at))], scene.tracks[name].size
+            theirs = scene.tracks[other].poses[np.minimum(found.sample + _COARSE * (at + 1), scene.count - 1)]
+            wrong[:] = _OTHER_SIDE * wrong_sides(own, (theirs, scene.tracks[other].size), (side, None))
+        yield from found.best(meets >= 0, wrong + _PER_S * meets * _COARSE * STEP_S)
 
 
 def runs_on(scene: Scene, name: str, surface: RoadSurface, after: int) -> Iterator[RunOut]:
@@ -125,7 +136,8 @@ def _first_meetings(scene: Scene, pair: tuple[str, str], ways: Floats, from_samp
     steps = np.arange(len(ways))
     theirs = other.poses[np.minimum(from_sample + _COARSE * (steps + 1), scene.count - 1)]
     every = np.repeat(theirs[:, None], ways.shape[1], axis=1)
-    gaps = gaps_where_near(ways.reshape(-1, 3), own.size, every.reshape(-1, 3), other.size).reshape(ways.shape[:2])
-    met = gaps <= 0.0
+    gaps = gaps_where_near(ways.reshape(-1, 3), own.size, every.reshape(-1, 3), other.size, _PARTED_M)
+    gaps = gaps.reshape(ways.shape[:2])
+    met = (gaps <= 0.0) & np.maximum.accumulate(gaps > _PARTED_M, axis=0)
     met[: round(_APART_S / STEP_S / _COARSE)] = False
     return np.where(met.any(axis=0), met.argmax(axis=0), -1)

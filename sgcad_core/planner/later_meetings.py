@@ -239,8 +239,9 @@ class LaterMeetings:
 
     def _runs_together(self, contact: Contact) -> Iterator[tuple[str, RunOut]]:
         """Run-outs of either of two that lead into the other one."""
+        sides = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
         for name, other in ((contact.striker, contact.struck), (contact.struck, contact.striker)):
-            runs = islice(runs_into(self.scene, name, other, self.order.after), _RUNS)
+            runs = islice(runs_into(self.scene, name, other, self.order.after, sides[name]), _RUNS)
             yield from ((name, run) for run in runs)
 
     # -------------------------------------------------------------- none is there

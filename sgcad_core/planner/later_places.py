@@ -83,7 +83,7 @@ class ToBeStruck:
         for least, wait_s in ((_LEAST_MPS, _SOON_S), (_PUSHES_MPS, _AT_ONCE_S)):
             moving = np.flatnonzero(speed > least)
             moving = moving[moving >= after + round(wait_s / STEP_S)] + 1
-            shares = _SOON if self.more else _LATE
+            shares = _SOON if self.more or self.role.actor.maneuver == "stopped" else _LATE
             found += [int(moving[round(share * (len(moving) - 1))]) for share in shares] if len(moving) else []
         return found
 

@@ -2,7 +2,7 @@
 an angle and slides along.
 
 Frames: headings counter-clockwise from east, radians; a thing's length is its depth, its width runs along the road, and
-its front faces what comes. Knows boxes; no actor, no road and no time.
+its front faces what comes. Knows boxes and kinds of things; no road and no time.
 """
 
 from __future__ import annotations
@@ -12,13 +12,18 @@ import math
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats, Size, corners_of
-from sgcad_core.records.specs import Area
+from sgcad_core.records.specs import Actor, Area, size_m
 
 _LEAST_M, _SHAPE = 4.0, 2.5
 """Width of the shortest of them, and how often its depth it is at least."""
 _BY_END_RAD, _BY_FLANK_RAD = math.radians(32.0), math.radians(10.0)
 """Angle between a vehicle and the thing that its front or back corner meets, and its flank. A corner lies on the front
 from arctan(width / length) on: 21 degrees on a car."""
+FLARES = ((0.0, 0.0), (8.0, 0.7), (16.0, 1.0), (32.0, 1.4))
+"""Angles in degrees at which the thing may come closer to the road, with their costs: along it wherever the told side
+then meets it."""
+_ALONG_END_RAD, _ALONG_FLANK_RAD = math.radians(25.0), math.radians(10.0)
+"""The same of a vehicle that leaves the road, to what runs exactly along it."""
 _AHEAD_M = 2.5
 """How far on along it the middle of the thing lies: the vehicle slides that way."""
 
@@ -28,9 +33,21 @@ def is_long(size: Size) -> bool:
     return size[1] >= max(_LEAST_M, _SHAPE * size[0])
 
 
+def runs_along(actor: Actor) -> bool:
+    """Whether a thing runs along the road; a long piece that lies in the way lies across it."""
+    return actor.record.thing and not actor.loose and is_long(size_m(actor))
+
+
 def meeting_angle(side: Area | None) -> float:
     """The angle between the way of a vehicle and the thing that one of its sides meets."""
     return _BY_FLANK_RAD if side in ("left", "right") else _BY_END_RAD
+
+
+def corner_m(by: Size, side: Area | None, behind_m: float = 0.0) -> float:
+    """How far beside a vehicle its leading corner meets the thing with a side, metres: seen from its center, or from a
+    point so far behind it."""
+    angle = _ALONG_FLANK_RAD if side in ("left", "right") else _ALONG_END_RAD
+    return (by[0] / 2 + behind_m) * math.sin(angle) + by[1] / 2 * math.cos(angle)
 
 
 def hand_of_side(side: Area | None, leaves: int) -> tuple[int, ...]:

@@ -38,7 +38,7 @@ from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.departures import departs, departure_station
 from sgcad_core.planner.lines.gore_lines import into_gores
 from sgcad_core.planner.lines.maneuver_course import course_of
-from sgcad_core.planner.lines.told_moves import off_and_back, with_room
+from sgcad_core.planner.lines.told_moves import off_and_back, off_on_one_side, with_room
 from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
 from sgcad_core.planner.motion import STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.near_crash.near_miss import near_encounter
@@ -86,6 +86,9 @@ def plan(
     """
     behavior = into_gores(behavior)
     courses = off_and_back(courses, (s.by for s in struck_before(behavior, behavior.contacts) if s.thing.firm))
+    first = behavior.first_meeting
+    things = [a.id for a in behavior.actors if a.record.thing]
+    courses = off_on_one_side(courses, [first.striker] if first and first.struck in things else [])
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
     lines = with_company(behavior, {a.id: course_of(graph, a, gentle) for a in behavior.actors}, courses)
     conflicts = Conflicts(behavior, lines, may_skid, by_force, courses)

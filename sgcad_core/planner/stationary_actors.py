@@ -14,7 +14,7 @@ from sgcad_core.planner.actor_plan import Drift, Role, Twist, facing, is_beside
 from sgcad_core.planner.lines.box_angles import ASKEW, aiming
 from sgcad_core.planner.lines.crossing import end_meets_flank
 from sgcad_core.planner.lines.path import Path
-from sgcad_core.planner.long_things import hand_of_side, is_long, meeting_angle, turned_to
+from sgcad_core.planner.long_things import FLARES, hand_of_side, runs_along, turned_to
 from sgcad_core.planner.motion import Motion
 
 _IN_LANE = 0.9
@@ -24,7 +24,7 @@ _OVER_A_LINE = ((0.4, 0.0), (0.5, 0.02), (0.3, 0.03), (0.6, 0.1))
 _NEEDED_ASKEW = ((0.3, 15), (0.3, -15), (0.4, 24), (0.4, -24))
 """Costs and degrees of standing slightly turned where an end is told to meet a flank, which takes an angle between the
 two."""
-_ACROSS = 0.8
+_ACROSS = 1.6
 """Cost of a long thing that stands across the way, over that of one along it."""
 
 
@@ -85,7 +85,10 @@ def askew(role: Role) -> list[Twist]:
 
 
 def beside_the_way(role: Role) -> list[Drift]:
-    """Places of an object on the line of the other actor and beside it, as far as their boxes still overlap."""
+    """Places of an object on the line of the other actor and beside it, as far as their boxes still overlap; what runs
+    along the road is met wherever the line comes to it."""
+    if runs_along(role.actor):
+        return [Drift(0.0)]
     reach = role.other_width_m / 2 + role.size[1] / 2 - 0.12
     offsets = (0.0, 0.3, -0.3, 0.6, -0.6, reach, -reach)
     return [Drift(0.05 * i, left) for i, left in enumerate(offsets)]
@@ -94,7 +97,7 @@ def beside_the_way(role: Role) -> list[Drift]:
 def any_angle(role: Role) -> list[Twist]:
     """An object has no heading of its own: its wanted side is turned to the actor that comes, be it tail first."""
     side = facing(role.side) if role.side else 0.0
-    along = _along_the_road(role, side) if is_long(role.size) else []
+    along = _along_the_road(role, side) if runs_along(role.actor) else []
     bearings = ((180, 0.0), (135, 0.05), (-135, 0.05), (90, 0.1), (-90, 0.1))
     from_behind = 180 if role.other_side == "back" else 0
     across = [Twist(cost + _ACROSS * bool(along), math.radians(d - from_behind) - side) for d, cost in bearings]
@@ -105,9 +108,12 @@ def _along_the_road(role: Role, side_rad: float) -> list[Twist]:
     """A long thing runs along the road, on the hand of the side that meets it; none where tail first is told."""
     if role.other_side == "back":
         return []
-    angle = meeting_angle(role.other_side)
     hands = hand_of_side(role.other_side, role.other_leaves)
-    return [Twist(0.05 * rank, turned_to(hand, angle) - side_rad) for rank, hand in enumerate(hands)]
+    return [
+        Twist(cost + 0.05 * rank, turned_to(hand, math.radians(flare)) - side_rad)
+        for flare, cost in FLARES
+        for rank, hand in enumerate(hands)
+    ]
 
 
 def steps_aside() -> list[Drift]:

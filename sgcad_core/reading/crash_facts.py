@@ -130,7 +130,8 @@ class CrashFacts:
     def _departing(self, courses: Courses) -> Courses:
         """The courses of vehicles whose departure only the thing beside the road implies that they strike first."""
         beside = rule("departures.roadside")
-        things = {other.id: other for other in self.others if other.hand or beside.search(other.word)}
+        aside = (other for other in self.others if other.lies is None)
+        things = {other.id: other for other in aside if other.hand or beside.search(other.word)}
         found = {}
         for v in self.vehicles:
             course = courses.get(v.id) or self.courses.get(v.id, CourseTold())
@@ -256,7 +257,9 @@ def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions, timelin
     """The crash that was read (`crash_told`) and what follows from it. A text that names no vehicle gives none."""
     vehicles = tuple(_vehicle(v, crash.motions[v.id], inferred, timeline) for v in crash.roster.vehicles)
     beside = others(crash.contact_mentions, crash.roster.ids, sum(v.beside for v in crash.roster.vehicles))
-    beside = tuple(replace(other, hand=crash.hands.get(other.word)) for other in beside)
+    beside = tuple(
+        replace(other, hand=crash.hands.get(other.word), lies=crash.lying.get(other.word)) for other in beside
+    )
     contacts = tuple(inferred.contacts) or _without_vehicle(crash, inferred, beside)
     if crash.roster.counted:
         vehicles, contacts = _subject_first(vehicles, contacts)

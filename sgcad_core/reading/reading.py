@@ -28,7 +28,7 @@ from sgcad_core.reading.contacts.crash_course import before_near_miss, courses_t
 from sgcad_core.reading.contacts.crash_roles import role_facts
 from sgcad_core.reading.contacts.later_impacts import later_impacts, things_struck, with_resting_contacts
 from sgcad_core.reading.contacts.near_crash import before_evasion, drifts_to, near_miss, near_misses, tells_hit
-from sgcad_core.reading.contacts.road_departure import hand_of_thing
+from sgcad_core.reading.contacts.road_departure import hand_of_thing, lies_in_road
 from sgcad_core.reading.contacts.untouched_events import untouched_event
 from sgcad_core.reading.crash_facts import CrashFacts, crash_of
 from sgcad_core.reading.inference.gaps import (
@@ -197,7 +197,8 @@ def events(
     if near and len(things) == 1 and not is_person(thing := next(iter(things))):
         near, hand = drifts_to(near, named.statements, hands.get(thing))
         hands |= {thing: hand} if hand else {}
-    crash_told = CrashTold(roster, moved, hits, course, impacts, near, walks, hands, missed, event)
+    lying = {word: how for word in things if (how := lies_in_road(word, [t.text for t in named.statements]))}
+    crash_told = CrashTold(roster, moved, hits, course, impacts, near, walks, hands, missed, event, lying)
     return Events(crash_told, conditions(found), signal_states(segments))
 
 

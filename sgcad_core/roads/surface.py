@@ -13,9 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import arc_lengths, resample
+from sgcad_core.kinds import DRIVEWAY
 from sgcad_core.roads.lane_graph import Floats, Lane, LaneGraph, road_of
 from sgcad_core.roads.lane_positions import Position, position
 
+_KIND = "kind"
+"""The parameter of an edge (`formats/sumo/parameters.py`)."""
 _LONGEST_M = 8.0
 """Longest piece of a center line."""
 _LEAST_WIDTH_M = 3.2
@@ -51,6 +54,8 @@ class RoadSurface(NamedTuple):
     junctions: tuple[Junction, ...]
     lanes: tuple[OfLane, ...] = ()
     """By piece what it is a part of."""
+    driveways: tuple[bool, ...] = ()
+    """By piece whether it is a part of a driveway, or the way into one."""
 
     @property
     def ways(self) -> Floats:
@@ -63,7 +68,14 @@ class RoadSurface(NamedTuple):
         """The surface of some of its pieces."""
         chosen = list(numbers)
         lanes = tuple(self.lanes[n] for n in chosen) if self.lanes else ()
-        return RoadSurface(self.starts[chosen], self.ends[chosen], self.halves[chosen], self.junctions, lanes)
+        aside = tuple(self.driveways[n] for n in chosen) if self.driveways else ()
+        return RoadSurface(self.starts[chosen], self.ends[chosen], self.halves[chosen], self.junctions, lanes, aside)
+
+    @property
+    def streets(self) -> RoadSurface:
+        """Without driveways; the whole where there is nothing else."""
+        chosen = [n for n, aside in enumerate(self.driveways) if not aside]
+        return self.part(chosen) if chosen else self
 
     def off(self, points: Floats) -> tuple[Floats, Floats]:
         """(m,) distance of (m, 2) points beyond the edge of the nearest lane (negative: on it), and the (m,) bearing
@@ -92,19 +104,22 @@ def road_surface(graph: LaneGraph) -> RoadSurface:
     pieces = list(_pieces(graph))
     starts, ends = np.vstack([p[0] for p in pieces]), np.vstack([p[1] for p in pieces])
     halves = np.concatenate([np.full(len(p[0]), p[2]) for p in pieces])
-    lanes = tuple(lane for begins, _, _, lane in pieces for _ in begins)
-    return RoadSurface(starts, ends, halves, tuple(_junctions(graph)), lanes)
+    lanes = tuple(lane for begins, _, _, lane, _ in pieces for _ in begins)
+    aside = tuple(one for begins, _, _, _, one in pieces for _ in begins)
+    return RoadSurface(starts, ends, halves, tuple(_junctions(graph)), lanes, aside)
 
 
-def _pieces(graph: LaneGraph) -> Iterator[tuple[Floats, Floats, float, OfLane]]:
+def _pieces(graph: LaneGraph) -> Iterator[tuple[Floats, Floats, float, OfLane, bool]]:
+    aside = {edge.id: edge.parameters.get(_KIND) == DRIVEWAY for edge in graph.edges.values()}
     for edge in graph.edges.values():
         for lane in edge.laid_lanes:
-            yield (*_cut(lane.shape), lane.width_m / 2, position(graph, lane.id) or "junction")
+            yield (*_cut(lane.shape), lane.width_m / 2, position(graph, lane.id) or "junction", aside[edge.id])
         if edge.center_lane is not None:
-            yield (*_cut(edge.center_lane.shape), edge.center_lane.width_m / 2, "center")
+            yield (*_cut(edge.center_lane.shape), edge.center_lane.width_m / 2, "center", aside[edge.id])
     for c in graph.connections:
         widths = [lane.width_m for lane in graph.edges[c.from_edge].lanes if lane.index == c.from_lane]
-        yield (*_cut(c.via_shape), max(*widths, _LEAST_WIDTH_M) / 2 if widths else _LEAST_WIDTH_M / 2, "junction")
+        half_m = max([*widths, _LEAST_WIDTH_M]) / 2
+        yield (*_cut(c.via_shape), half_m, "junction", aside[c.from_edge] or aside[c.to_edge])
 
 
 def _cut(line: Floats) -> tuple[Floats, Floats]:

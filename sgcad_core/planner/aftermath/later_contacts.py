@@ -7,15 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import islice
 from typing import NamedTuple, Protocol
 
-from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit, leaving_the_road
+from sgcad_core.kinds import actor_kind
+from sgcad_core.planner.aftermath.rest_candidates import odd_ways
+from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit
 from sgcad_core.planner.aftermath.second_contact import MISSED
 from sgcad_core.planner.aftermath.struck_objects import Strike, leave_beside, place_thing
-from sgcad_core.planner.aftermath.told_order import ToldOrder, pair_of
+from sgcad_core.planner.aftermath.told_order import Pair, ToldOrder, pair_of
 from sgcad_core.planner.encounter.off_center import NARROW_M, SHARES, USUAL
 from sgcad_core.planner.later_courses import runs_on, with_run
+from sgcad_core.planner.long_things import runs_along
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
@@ -87,11 +91,13 @@ def expect_later_contacts(scene: Scene, contacts: Sequence[Contact]) -> None:
     """Sets the pairs of a scene that touch after the first contact, and those that touch a second time."""
     first = {pair_of(contact) for contact in contacts[:1]}
     further = frozenset(pair_of(contact) for contact in contacts[1:])
-    scene.again, scene.told = further & first, further - first
-    for contact in contacts[1:]:
-        if pair_of(contact) in scene.again:
+    met: set[Pair] = set()
+    for contact in contacts:
+        if (pair := pair_of(contact)) in met:
             sides = {contact.striker: contact.striker_area, contact.struck: contact.struck_area}
-            scene.sides.setdefault(pair_of(contact), sides)
+            scene.sides.setdefault(pair, sides)
+        met.add(pair)
+    scene.again, scene.told = frozenset(scene.sides), further - first
 
 
 def _off_middle(strike: Strike, course: CourseTold) -> Strike:
@@ -104,6 +110,13 @@ def _off_middle(strike: Strike, course: CourseTold) -> Strike:
         return replace(strike, asides=tuple(sign * share / 2 for share in SHARES))
     both = course.spin_deg or course.rest.facing_deg is not None
     return replace(strike, asides=(-USUAL / 2, USUAL / 2) if both else (-USUAL / 2,))
+
+
+def leaving_the_road(course: CourseTold) -> CourseTold:
+    """The stated course of a vehicle that strikes an object beside the road: without a stated place it leaves the
+    road."""
+    where = course.rest.where or "off_road"
+    return replace(course, rest=replace(course.rest, where=where))
 
 
 def _on_the_way(told: Courses, rolling: frozenset[str]) -> Courses:
@@ -128,7 +141,7 @@ class Ending:
     ) -> None:  # fmt: skip
         self.scene, self.order, self.meet = scene, order, meet
         self.strikes = {strike.thing.id: strike for strike in strikes_of(behavior, contacts)}
-        further = [c for c in contacts[1:] if pair_of(c) not in scene.again]
+        further = [c for c in contacts[1:] if pair_of(c) != pair_of(contacts[0])]
         at = next((n for n, c in enumerate(further) if c.struck in self.strikes), len(further))
         self.before, self.then = further[:at], further[at:]
 
@@ -142,6 +155,8 @@ class Ending:
         scene, touched = self.scene, {name for touch in self.scene.touches for name in (touch.first, touch.second)}
         rolling = frozenset(strike.by for strike in self.strikes.values() if strike.by in touched)
         told = {name: courses[name] for name in scene.tracks if name in courses}
+        for name in self._turning_on_the_spot(surface):
+            told.setdefault(name, CourseTold())
         passed: list[tuple[Strike, int]] = []
         if not told and not rolling and not scene.again:
             notes = list(self._then(courses, surface, lambda: 0.0, passed))
@@ -155,6 +170,12 @@ class Ending:
         rests = RestFit(scene, told, surface, rolling, impacts, self.order)
         rests.finish()
         return Ended((*notes, *rests.missed()), rests.cost() + MISSED * len(notes), tuple(passed))
+
+    def _turning_on_the_spot(self, surface: RoadSurface) -> list[str]:
+        """Vehicles that turn on the spot behind the first contact, as no wreck does."""
+        tracks = {name: t for name, t in self.scene.tracks.items() if t.hit is not None and actor_kind(t.kind).wheeled}
+        ways = {name: track.poses[self.scene.contact :, None] for name, track in tracks.items()}
+        return [name for name, way in ways.items() if odd_ways(CourseTold(), way, surface)[0] > 0.0]
 
     def _then(
         self, courses: Courses, surface: RoadSurface, cost: Callable[[], float], passed: list[tuple[Strike, int]]
@@ -179,24 +200,41 @@ class Ending:
         """Places a thing on the way of its vehicle, or on another one that it can take; a note where it is missed. What
         stays where it stands is beside the road, unless the vehicle is told to rest on the road. `ends`: the cost of
         the rest as settled, and the number of contacts that follow."""
-        beside = strike.thing.stays and told.rest.where not in ("road", "intersection")
-        placed = beside and self._is_met(strike, surface, ends, on_road=False)
-        if not placed and not self._is_met(strike, surface, ends, on_road=True):
+        along = runs_along(strike.thing)
+        beside = strike.thing.stays and (along or told.rest.where not in ("road", "intersection"))
+        placed = along and self._is_met(strike, surface, ends, on_road=False, as_told=True)
+        placed = placed or (beside and self._is_met(strike, surface, ends, on_road=False))
+        if placed:
+            return
+        aside = along and told.rest.where in ("off_road", "shoulder", "median")
+        if not aside and self._is_met(strike, surface, ends, on_road=True):
+            if along:
+                yield f"{strike.thing.id} stands in the lanes, where nothing runs along the road"
+        else:
             leave_beside(self.scene, strike)
             yield f"{strike.by} does not reach {strike.thing.id}, which it strikes as told"
 
     def _is_met(
-        self, strike: Strike, surface: RoadSurface, ends: tuple[Callable[[], float], int], *, on_road: bool
+        self,
+        strike: Strike,
+        surface: RoadSurface,
+        ends: tuple[Callable[[], float], int],
+        *,
+        on_road: bool,
+        as_told: bool = False,
     ) -> bool:
         """Whether a thing has a place on the way of its vehicle, or on another one that it can take; `on_road`: the
-        place may be on the road."""
+        place may be on the road; `as_told`: only along the road, before the told side."""
         scene, before, (cost, more) = self.scene, self.scene.runs, ends
-        if place_thing(scene, strike, surface, cost, self.order, more=more, on_road=on_road):
+        placed = partial(
+            place_thing, scene, strike, surface, cost, self.order, more=more, on_road=on_road, as_told=as_told
+        )
+        if placed():
             return True
-        for run in islice(runs_on(scene, strike.by, surface, self.order.after), _OTHER_WAYS):
+        for run in islice(runs_on(scene, strike.by, surface, self.order.after), _OTHER_WAYS * (1 + as_told)):
             scene.runs = with_run(scene, strike.by, run)
             scene.settle()
-            if self.order.kept and place_thing(scene, strike, surface, cost, self.order, more=more, on_road=on_road):
+            if self.order.kept and placed():
                 return True
             scene.runs = before
             scene.settle()

@@ -16,8 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import Floats, Size, gaps_where_near
+from sgcad_core.metrics.rest_error import whirls
 from sgcad_core.planner.aftermath.ground_friction import RunOut
 from sgcad_core.planner.aftermath.second_contact import MISSED, NOT_AGAIN, WRONG_SIDE, Sides, wrong_sides
+from sgcad_core.records.course import CourseTold
+from sgcad_core.roads.surface import RoadSurface
 
 Ints = NDArray[np.int_]
 
@@ -54,6 +57,10 @@ _SOON = 40
 """Steps of the run-outs that are compared: 4 s, later they hardly move."""
 _IN_EACH_OTHER_M = 0.25
 """Run-outs on which two boxes would overlap so deep are excluded: they push each other elsewhere."""
+_ON_THE_SPOT, _SPOT_RAD = 0.5, math.radians(85.0)
+_LEAVES, _LEAVES_M, _SEEN = 0.4, 0.8, 12
+"""Cost of a rotation on the spot; of a way off the road before a rest on it, from how far on, and the poses of a way
+that are looked at. Both are less than a missed part of what is told."""
 UNUSUAL = 0.02
 _MOVES_MPS = 0.7
 """Speed from which the direction of a way counts."""
@@ -219,4 +226,15 @@ def loops(ways: Floats, step_s: float) -> Floats:
     way = np.unwrap(np.arctan2(moves[..., 1], moves[..., 0]), axis=0)
     turned = np.where(moving, np.abs(way - way[:1]), 0.0).max(axis=0)
     cost: Floats = _STRAYS * np.where(turned > _STRAY_RAD, turned / _STRAY_RAD, 0.0)
+    return cost
+
+
+def odd_ways(course: CourseTold, ways: Floats, surface: RoadSurface) -> Floats:
+    """(n,) costs of (m, n, 3) ways that turn on the spot, or that leave the road of which the told rest is a part and
+    come back to it."""
+    cost = _ON_THE_SPOT * (whirls(ways) > _SPOT_RAD).astype(float)
+    if course.rest.where == "road":
+        some = ways[:: max(len(ways) // _SEEN, 1)]
+        off = surface.off(some[..., :2].reshape(-1, 2))[0].reshape(len(some), -1)
+        cost = cost + _LEAVES * ((off.max(axis=0) > _LEAVES_M) & (off[0] < 0.0))
     return cost

@@ -11,17 +11,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.rest_error import (
-    FACING_RAD,
     SIDE_RAD,
     SPINS_RAD,
     RestErrors,
+    in_words,
     near_m,
     near_turn_rad,
     rest_errors,
@@ -33,6 +33,7 @@ from sgcad_core.planner.aftermath.rest_candidates import (
     VehicleWays,
     all_runs,
     loops,
+    odd_ways,
     oddities,
 )
 from sgcad_core.planner.aftermath.rollover import rolls_over
@@ -66,13 +67,8 @@ _FACING_SCALE_RAD, _PLACE_SCALE_M = math.radians(45.0), 5.0
 _TOLD, _USUAL_SHARE = 1.0, 0.6
 """Cost of a missed part; share of the friction: some braking, some dragging wheels."""
 _SPIN_RAD, _MOST_UNTOLD_RAD, _WHIRLS = math.radians(15.0), math.radians(200.0), 1.3
-
-
-def leaving_the_road(course: CourseTold) -> CourseTold:
-    """The stated course of a vehicle that strikes an object beside the road: without a stated place it leaves the
-    road."""
-    where = course.rest.where or "off_road"
-    return replace(course, rest=replace(course.rest, where=where))
+_MOST_SPIN_RAD = math.radians(320.0)
+"""The most of a told rotation without told degrees."""
 
 
 @dataclass(frozen=True)
@@ -149,6 +145,7 @@ class RestFit:
         return {
             name: course for name, course in told.items()
             if not course.rest.empty or course.spin or name in again or name in self._makes_way
+            or self._odd_way(name, course) > 0.0
         }  # fmt: skip
 
     @cached_property
@@ -176,7 +173,7 @@ class RestFit:
         free = [name for name in self.wanted if wreck.named[name].free and not wreck.named[name].fixed]
         told = scene.sides.get(frozenset(free), {})
         sides = (told.get(free[0]), told.get(free[-1])) if free else (None, None)
-        found = BlowWays(friction, restitution, bool(scene.again), sides)
+        found = BlowWays(friction, restitution, any(pair <= set(free) for pair in scene.again), sides)
         if not free:
             return found
         at_s, end_s = until * STEP_S, (scene.count - 4) * STEP_S
@@ -190,6 +187,8 @@ class RestFit:
         each = run_out_paths(released, drags, runs, end_s, _COARSE_S)
         for name, drag, mine, ways in zip(free, drags, runs, each, strict=True):
             odd = oddities(mine, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE) + loops(ways, _COARSE_S)
+            if not scene.again:  # there are few ways to a second contact
+                odd = odd + odd_ways(self.wanted[name], ways, self.surface)
             judge = partial(self._costs, name, self.wanted[name])
             found.vehicles[name] = VehicleWays(mine, ways, odd, judge, scene.tracks[name].size)
         return found
@@ -201,7 +200,13 @@ class RestFit:
         missed = sum(missed_again(self.scene, pair) for pair in self.scene.again if pair <= self.scene.tracks.keys())
         if self.order is not None:
             missed += WRONG_SIDE * self.order.sides_missed if self.order.kept else _PARTED
+        missed += sum(self._odd_way(name, course) for name, course in self.wanted.items())
         return missed + sum(float(self._costs(name, course, ends[name])[0]) for name, course in self.wanted.items())
+
+    def _odd_way(self, name: str, course: CourseTold) -> float:
+        """The cost of how a vehicle gets to its end in the settled scene."""
+        way = self.scene.tracks[name].poses[self.scene.contact :, None]
+        return float(odd_ways(course, way, self.surface)[0])
 
     def _meet_again(self, pair: frozenset[str]) -> bool:
         """Whether two touch a second time."""
@@ -232,6 +237,8 @@ class RestFit:
         if course.spin_deg:
             off = np.abs(wanted - turned)
             wrong |= off > near_turn_rad(wanted)
+        else:
+            wrong |= turned > _MOST_SPIN_RAD
         return _TOLD * wrong + _eased(off / (2 * wanted))
 
     def _whirled(self, name: str, ends: Floats) -> Floats:
@@ -258,7 +265,7 @@ class RestFit:
 
     def _missed(self, name: str, rest: RestTold) -> Iterator[str]:
         errors = self._errors(name, rest, self.scene.tracks[name].poses[-1:])
-        yield from (f"{name} {words}" for words in _in_words(rest, errors))
+        yield from (f"{name} {words}" for words in in_words(rest, errors))
         if rest.distance_m is not None:
             way = float(self._way_m(name, self.scene.tracks[name].poses[-1:])[0])
             if abs(way - rest.distance_m) > near_m(rest.distance_m):
@@ -280,21 +287,3 @@ def _eased(error: Floats) -> Floats:
     """Errors as costs below 1, so that no near miss of one part outweighs that another part is met."""
     eased: Floats = error / (1.0 + error)
     return eased
-
-
-def _in_words(rest: RestTold, errors: RestErrors) -> Iterator[str]:
-    facing, where, side, lane = errors
-    if facing is not None and facing[0] > 0:
-        off = math.degrees(float(facing[0]) + FACING_RAD)
-        yield f"comes to rest facing {off:.0f} degrees off what is told"
-    if where is not None and where[0] > 0:
-        yield f"comes to rest {float(where[0]):.1f} m from the told place ({(rest.where or '').replace('_', ' ')})"
-    if side is not None and side[0] > 0:
-        yield f"comes to rest on another side than told ({rest.side})"
-    if lane is not None and lane[0] > 0:
-        yield f"comes to rest {float(lane[0]):.1f} m from the told {_lane_in_words(rest)}"
-
-
-def _lane_in_words(rest: RestTold) -> str:
-    named = f"lane {rest.lane}" if isinstance(rest.lane, int) else f"{rest.lane or ''} lane".replace("_", " ")
-    return " ".join(filter(None, [named.strip(), f"({rest.lane_way})" if rest.lane_way else ""]))

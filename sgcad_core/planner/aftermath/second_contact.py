@@ -34,10 +34,14 @@ def missed_again(scene: Scene, pair: frozenset[str]) -> float:
 
 
 def sides_missed(scene: Scene, contact: Contact) -> int:
-    """The number of stated sides on which the first touch of two in a settled scene is another one; 0 where they do
-    not touch."""
-    seen = first_sides(scene.tracks[contact.striker], scene.tracks[contact.struck])
-    return _differing((contact.striker_area, contact.struck_area), seen) if seen else 0
+    """The number of stated sides on which the first touch of two in a settled scene is another one, of a second contact
+    the further ones; 0 where they do not touch."""
+    one, other = scene.tracks[contact.striker], scene.tracks[contact.struck]
+    told = contact.striker_area, contact.struck_area
+    seen = _touches(one.poses, other.poses, one.size, other.size)
+    again = scene.sides.get(frozenset((contact.striker, contact.struck)))
+    further = again == {contact.striker: told[0], contact.struck: told[1]}
+    return min((_differing(told, sides) for sides in (seen[1:] if further else seen[:1])), default=0)
 
 
 def first_sides(one: Track, other: Track) -> tuple[Area, Area] | None:

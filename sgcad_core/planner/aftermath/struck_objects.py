@@ -15,9 +15,18 @@ import numpy as np
 
 from sgcad_core.geometry.plane import SIDES, Floats, Size, gaps_where_near
 from sgcad_core.planner.actor_plan import is_beside
+from sgcad_core.planner.aftermath.rails import (
+    ANOTHER_SIDE,
+    DEPTH_M,
+    OUTWARD_MPS,
+    SLANTED,
+    along_road,
+    along_way,
+    stands_on_road,
+)
 from sgcad_core.planner.aftermath.second_contact import first_sides
 from sgcad_core.planner.aftermath.told_order import ToldOrder, touched
-from sgcad_core.planner.long_things import beside, corner_side, hand_of_side, is_long, meeting_angle, turned_to
+from sgcad_core.planner.long_things import runs_along
 from sgcad_core.planner.motion import STEP_S, standing_at
 from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.records.specs import Actor, Area, size_m
@@ -29,8 +38,6 @@ _BETWEEN = 3
 """Samples between the last contact and this one."""
 _LEAST_MPS = 2.6
 """A slower impact is hardly one, and files whose vertices lie 0.11 m apart cannot show it."""
-_DEPTH_M = 0.05
-"""Overlap of the undisturbed box with the object at the sample of the impact."""
 _GRAZE_M = 0.02
 """Overlap of a flank with what it scrapes: deeper, the corner ahead of it would meet the thing head on."""
 _PASSED = 0.6
@@ -44,13 +51,12 @@ _OTHER_SIDE = 1.0
 _FURTHER, _ALL_PLACES = 2, 99
 """Places at which it is struck that are tried behind the first one, where further contacts follow and where not."""
 _PAST_M = (6.0, 10.0, 16.0, 25.0, 40.0, 60.0)
-_OFF_ROAD_M = 0.3
 _GENTLE_MPS = 0.8
 """Taken where the vehicle is no faster any more."""
+_ON_ROAD, _LEFT_OUT = 10, 99
+"""Rank of what stands on the road over the same beside it; that of places that are not tried."""
 _RANKS = 2
 """Kinds of places (on or off the road, before the told side or another one) that are tried."""
-_OUTWARD_MPS = 0.5
-"""Outward speed of a side of the box that can strike an object."""
 _LATE, _EARLY = (0.95, 0.7, 0.45, 0.2), (0.1, 0.25, 0.4, 0.6)
 """Places to try, as shares of those with a visible impact: early where further contacts follow, and among many of them
 at the place that leaves each an equal share of the way."""
@@ -74,7 +80,8 @@ class Strike:
     @property
     def glances(self) -> bool:
         """Whether the vehicle goes on past a thing that stays."""
-        return self.goes_on and self.thing.firm and (self.side is None or not is_beside(self.side))
+        passes = self.side is None or not is_beside(self.side)
+        return self.goes_on and self.thing.firm and passes and not runs_along(self.thing)
 
 
 def leave_beside(scene: Scene, strike: Strike) -> None:
@@ -96,17 +103,20 @@ def _out_of_reach(scene: Scene, strike: Strike) -> Floats:
 
 def place_thing(
     scene: Scene, strike: Strike, surface: RoadSurface, cost: Callable[[], float], order: ToldOrder, *,
-    more: int, on_road: bool = True,
+    more: int, on_road: bool = True, as_told: bool = False,
 ) -> bool:  # fmt: skip
     """Places an object where it is struck with the stated side and the rest is best; False where no place is struck
     next in order.
 
     `cost`: of the rest as settled. `more`: number of contacts that follow. `on_road`: whether it may stand there.
+    `as_told`: a long thing only along the road, and before the told side.
     """
     best: tuple[float, Track] | None = None
     further = _FURTHER if more else _ALL_PLACES
-    for pose in _poses(scene, strike, surface, order.after, more=more):
-        if not (on_road or surface.off(pose[None, :2])[0][0] > _OFF_ROAD_M):
+    for rank, pose in _poses(scene, strike, surface, order.after, more=more):
+        if as_told and rank >= ANOTHER_SIDE:
+            continue
+        if not on_road and stands_on_road(surface, pose[None], size_m(strike.thing))[0]:
             continue
         track = _stand(scene, strike, pose)
         scene.settle()
@@ -124,8 +134,10 @@ def place_thing(
     return best is not None
 
 
-def _poses(scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, more: int) -> Iterator[Floats]:
-    """The places of an object at one offset after the other."""
+def _poses(
+    scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, more: int
+) -> Iterator[tuple[int, Floats]]:
+    """The places of an object with their ranks, at one offset after the other."""
     for aside in strike.asides:
         yield from _places(scene, replace(strike, asides=(aside,)), surface, after, more=more)
 
@@ -160,23 +172,27 @@ def _stand(scene: Scene, strike: Strike, pose: Floats) -> Track:
 
 
 # ------------------------------------------------------------------ where
-def _places(scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, more: int) -> list[Floats]:
-    """(3,) poses on the way of the vehicle, best first: off the road before on it, the stated side before others."""
+def _places(scene: Scene, strike: Strike, surface: RoadSurface, after: int, *, more: int) -> list[tuple[int, Floats]]:
+    """Ranks and (3,) poses on the way of the vehicle, best first: off the road before on it, pieces on it before off
+    it, the stated side first."""
     size, track = size_m(strike.thing), scene.tracks[strike.by]
     samples = _samples(scene, strike, track, after)
-    near = _along_road(track, samples, strike, surface) if is_long(size) else iter(())
+    near = along_road(track, samples, strike.side, size, surface) if runs_along(strike.thing) else iter(())
     ranked = ((rank, pose, int(k)) for k in samples for rank, pose in _beside(track, int(k), strike, size))
     found = [(rank, pose) for rank, pose, k in (*near, *ranked) if _is_free(scene, strike, pose, size, k)]
     if not found:
         return []
     poses = np.array([pose for _, pose in found])
-    on_road = surface.off(poses[:, :2])[0] <= _OFF_ROAD_M
-    ranks = np.array([rank for rank, _ in found]) + 10 * on_road
+    on_road = stands_on_road(surface, poses, size) != strike.thing.loose
+    ranks = np.array([rank for rank, _ in found]) + _ON_ROAD * on_road
+    if runs_along(strike.thing) and (ranks < SLANTED).any():
+        ranks[ranks >= SLANTED] = _LEFT_OUT
     shares = (0.6 / (more + 1), *_EARLY) if more else _LATE
-    ordered: list[Floats] = []
-    for rank in np.unique(ranks)[:_RANKS]:
+    ordered: list[tuple[int, Floats]] = []
+    for rank in np.unique(ranks[ranks < _LEFT_OUT])[:_RANKS]:
         chosen = np.flatnonzero(ranks == rank)
-        ordered += [poses[chosen[i]] for i in dict.fromkeys(round(share * (len(chosen) - 1)) for share in shares)]
+        at = dict.fromkeys(round(share * (len(chosen) - 1)) for share in shares)
+        ordered += [(int(rank) % _ON_ROAD, poses[chosen[i]]) for i in at]
     return ordered
 
 
@@ -199,12 +215,12 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
     for number, side in enumerate(SIDES):
         out = heading + number * math.pi / 2
         outward = (by[0] * math.cos(out) + by[1] * math.sin(out)) / STEP_S
-        grazes = side == strike.side and is_beside(side) and abs(outward) < _OUTWARD_MPS
-        if outward < _OUTWARD_MPS and not grazes:
+        grazes = side == strike.side and is_beside(side) and abs(outward) < OUTWARD_MPS
+        if outward < OUTWARD_MPS and not grazes:
             continue
-        if is_long(size) and side != "back":
-            rank = 1 if side == strike.side or strike.side is None else 2
-            yield from ((rank, pose) for pose in _along(track, k, side, size))
+        if runs_along(strike.thing) and side != "back":
+            rank = SLANTED + (side != strike.side and strike.side is not None)
+            yield from ((rank, pose) for pose in along_way(track, k, side, size))
             continue
         if grazes:
             yield 0, _grazed(track, k, out, size)
@@ -212,7 +228,7 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
         if strike.glances and number % 2:
             continue
         depth, width = (max(size), min(size)) if strike.glances else size
-        reach = track.size[number % 2] / 2 + depth / 2 - min(_DEPTH_M, outward * STEP_S)
+        reach = track.size[number % 2] / 2 + depth / 2 - min(DEPTH_M, outward * STEP_S)
         leads = outward > 0.7 * math.hypot(by[0], by[1]) / STEP_S
         rank = 0 if side == strike.side or (strike.side is None and leads) else 1 if leads else 2
         left = strike.asides[0] * track.size[1 - number % 2]
@@ -233,31 +249,6 @@ def _grazed(track: Track, k: int, out: float, size: Size) -> Floats:
     reach = track.size[1] / 2 + size[0] / 2 - _GRAZE_M
     x, y = x + ahead * math.cos(heading), y + ahead * math.sin(heading)
     return np.array([x + reach * math.cos(out), y + reach * math.sin(out), out])
-
-
-def _along_road(
-    track: Track, samples: Floats, strike: Strike, surface: RoadSurface
-) -> Iterator[tuple[int, Floats, int]]:
-    """(0, pose, sample) of a long thing that runs along the nearest road, where the vehicle comes to it with the stated
-    side."""
-    size = size_m(strike.thing)
-    poses = track.poses[samples.astype(int)]
-    by = (poses - track.poses[samples.astype(int) - 1])[:, :2] / STEP_S
-    roads = surface.part([n for n, lane in enumerate(surface.lanes) if lane != "junction"])
-    _, _, nearest = roads.nearest(poses[:, :2])
-    for k, pose, speed, way in zip(samples.astype(int), poses, by, roads.ways[nearest], strict=True):
-        outward = float(speed[1] * math.cos(way) - speed[0] * math.sin(way))
-        away = float(way) + math.copysign(math.pi / 2, outward)
-        if abs(outward) > _OUTWARD_MPS and strike.side in (None, corner_side(pose, track.size, away)):
-            yield 0, beside(pose, track.size, size, away + math.pi, _DEPTH_M), int(k)
-
-
-def _along(track: Track, k: int, side: Area, size: Size) -> Iterator[Floats]:
-    """The poses of a long thing that runs along the road, before a side of the box on one hand or the other."""
-    pose = track.poses[k]
-    for hand in hand_of_side(side, 0):
-        heading = float(pose[2]) + turned_to(hand, meeting_angle(side))
-        yield beside(pose, track.size, size, heading, _DEPTH_M)
 
 
 def _is_free(scene: Scene, strike: Strike, pose: Floats, size: Size, until: int) -> bool:

@@ -32,7 +32,7 @@ from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.departures import departs, departure_sides, departure_station, side_of
 from sgcad_core.planner.lines.told_moves import with_room
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
-from sgcad_core.planner.long_things import is_long
+from sgcad_core.planner.long_things import runs_along
 from sgcad_core.planner.stationary_actors import needs_angle, parked_beside_m
 from sgcad_core.records.course import Courses, CourseTold
 from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact, size_m
@@ -259,7 +259,7 @@ def _facing_other(role: Role, other: Role) -> Role:
         other_spins=bool(other.spins),
         other_lost=other.told.lost_control,
         other_moves_up_m=MOVES_UP_M if other.told.comes == "moves_up" else 0.0,
-        other_long=other.actor.record.thing and is_long(other.size),
+        other_long_m=other.size[0] if runs_along(other.actor) else 0.0,
         other_leaves=_leaves(other),
     )
 

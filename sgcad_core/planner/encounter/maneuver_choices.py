@@ -9,28 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
-from sgcad_core.planner.actor_plan import Drift, Role, along_with, comes_against, is_beside, usual_speed
-from sgcad_core.planner.encounter.meeting_place import TURNING
+from sgcad_core.planner.actor_plan import Drift, Role, along_with, comes_against, is_beside
 from sgcad_core.planner.encounter.out_of_lanes import is_out
 from sgcad_core.planner.encounter.pacing_choices import from_another_road
+from sgcad_core.planner.encounter.ways_off_road import departures, eased
 from sgcad_core.planner.lines.box_angles import SKIDS, STEERS
 from sgcad_core.planner.lines.crossing import LEAVES, brushing, crossings, end_meets_flank
-from sgcad_core.planner.lines.departures import (
-    DEPARTURES,
-    GENTLY,
-    LONG_AT_M,
-    OFF_ROAD_M,
-    SWERVE_MPS2,
-    aside_m,
-    departs,
-    departure_sides,
-    half_gone,
-    room_before_m,
-    shift_length_m,
-    still_leaving,
-)
+from sgcad_core.planner.lines.departures import DEPARTURES, GENTLY, aside_m, change_of_line, departs
 from sgcad_core.planner.lines.lost_control import lost_lines
-from sgcad_core.planner.lines.path import ramp_length_m
 from sgcad_core.planner.lines.told_moves import last_move, with_earlier
 from sgcad_core.planner.lines.turning import corner_lines
 from sgcad_core.records.course import Move, Steering
@@ -44,11 +30,10 @@ OTHER_LANE_COST = 1.0
 """More than another speed: a told lane is taken wherever the two can meet from it."""
 _SHARES = [(1.0, 0.0), (0.75, 0.1), (1.25, 0.15), (0.5, 0.2), (1.6, 0.3), (2.0, 0.4)]
 """Shares of the shift of a maneuver with their costs."""
-_OTHER_SIDE, _STAYS_ON_ROAD, _GENTLE = 0.25, 2.5, 0.2
-"""Costs of leaving the road on the unlikelier side, of a told departure that is not driven, and of a gentle change of
-line where a steep one is needed."""
-_OFF_BEHIND_TURN_M = 16.0
-"""Length of the way off the road of a vehicle that turns first."""
+_ABREAST_M = 12.0
+"""Way in the lane beside before one that overtakes meets what it overtakes."""
+_GENTLE = 0.2
+"""Cost of a gentle change of line where a steep one is needed."""
 _SWERVES, _OFF_COURSE = "swerves", "leaves its course"
 HEAD_ON = "leaves its lane, as the told sides imply of one of the two"
 PARKED_THERE = "leaves its lane, as the place of the parked vehicle implies"
@@ -70,7 +55,7 @@ def drifts(role: Role, *, fine: bool = True) -> list[Drift]:
 def _wandering(role: Role, last: Move, *, fine: bool) -> list[Drift]:
     """The told moves in their order; or, dearer than those, the lines without the earlier ones."""
     if last.kind == "departs":
-        lines = _departures(role, fine=fine)
+        lines = departures(role, fine=fine)
     elif last.kind == "crosses":
         lines = [*_shifts(role, role.course.opposite_m, _SHARES if fine else [_SHARES[0], _SHARES[3]])]
     elif last.kind == "steers":
@@ -84,7 +69,7 @@ def _wandering(role: Role, last: Move, *, fine: bool) -> list[Drift]:
 def _lines(role: Role, *, fine: bool) -> list[Drift]:
     """The lines of its maneuver, or those of its lane."""
     if departs(role.actor.maneuver, role.told.departs):
-        return _departures(role, fine=fine)
+        return departures(role, fine=fine)
     steep = _steep(role)
     if role.actor.maneuver in _LANE_CHANGES:
         joins = role.actor.maneuver == "merge" and _joins(role)
@@ -97,6 +82,8 @@ def _lines(role: Role, *, fine: bool) -> list[Drift]:
         if role.spins or role.glances:
             shares = [(0.63, 0.0), (1.37, 0.05), (1.0, 0.1), *shares[1:]]
         shares = shares if fine else [shares[0], shares[3], shares[4]]
+        if role.actor.maneuver == "overtaking" and end_meets_flank(role):
+            return _behind([*_passing(role, wanted)], [*steep, *_shifts(role, wanted, shares), Drift(0.8)])
         return [*_behind(steep, [*_shifts(role, wanted, shares), *_far_over(role, shares)]), Drift(0.8)]
     near = [*_to_parked(role), *brushing(role), *(_in_lane(role) if fine else [])]
     if evading := _evading(role):
@@ -110,7 +97,9 @@ def _to_parked(role: Role) -> list[Drift]:
         return []
     aside, touch = role.place.aside_m, (role.size[1] + role.other_width_m) / 2
     reach = [(abs(aside) - touch + share * role.size[1], cost) for share, cost in _OVERLAPS]
-    lines = [_drift(role, math.copysign(left, aside), cost, 1.7, PARKED_THERE) for left, cost in reach if left > 0]
+    lines = [
+        change_of_line(role, math.copysign(left, aside), cost, 1.7, PARKED_THERE) for left, cost in reach if left > 0
+    ]
     if role.actor.maneuver == "backing" and abs(math.sin(role.place.angle_rad)) < 0.5:  # it was parked in that row
         return [*(one._replace(length_m=1.0, end_m=-1e4) for one in lines), *_behind(lines, lines)]
     return lines
@@ -131,29 +120,15 @@ def _behind(first: Sequence[Drift], others: Iterable[Drift]) -> list[Drift]:
 
 def _shifts(role: Role, left_m: float, shares: Sequence[tuple[float, float]]) -> Iterator[Drift]:
     """Shares of a shift with their costs: gently, and the first three also hard and sharply."""
-    for share, cost, ease in _eased(shares):
-        yield _drift(role, left_m * share, cost, ease)
+    for share, cost, ease in eased(shares):
+        yield change_of_line(role, left_m * share, cost, ease)
 
 
-def _eased(shares: Sequence[tuple[float, float]]) -> Iterator[tuple[float, float, float]]:
-    """Shares with their costs and an ease."""
-    for ease, more, count in ((GENTLY, 0.0, None), (1.0, 0.12, 3), (0.6, 0.4, 3)):
-        yield from ((share, cost + more, ease) for share, cost in shares[:count])
-
-
-def _departures(role: Role, *, fine: bool) -> list[Drift]:
-    """Ways off the road on the side that is told, or on the likelier one and the other."""
-    shares = [(1.0, 0.0), (0.8, 0.1), (1.3, 0.15), (1.7, 0.3)] if fine else [(1.0, 0.0), (1.3, 0.15)]
-    found: list[Drift] = []
-    sides = departure_sides(role.course, role.place.station_m, role.told.departs or "either")
-    for rank, side in enumerate(sides):
-        wide = aside_m(role.course, side, LONG_AT_M if role.other_long else OFF_ROAD_M)
-        for share, cost, ease in _eased(shares):
-            drift = _drift(role, wide * share, cost + _OTHER_SIDE * rank, ease)
-            found.append(half_gone(role, drift, ease) if role.other_long else still_leaving(role, drift, ease))
-    if role.actor.maneuver in TURNING:
-        found = [drift._replace(length_m=min(drift.length_m, _OFF_BEHIND_TURN_M)) for drift in found]
-    return sorted([*found, Drift(_STAYS_ON_ROAD)], key=lambda drift: drift.cost)
+def _passing(role: Role, wanted: float) -> Iterator[Drift]:
+    """Ways into the lane beside that are over before the place: what is overtaken is met from there."""
+    for share, cost in ((1.0, 0.0), (0.85, 0.05), (1.15, 0.1)):
+        line = change_of_line(role, wanted * share, cost, GENTLY)
+        yield line._replace(end_m=line.end_m - _ABREAST_M)
 
 
 def _far_over(role: Role, shares: Sequence[tuple[float, float]]) -> Iterator[Drift]:
@@ -179,7 +154,7 @@ def _steering(role: Role, told: Steering) -> list[Drift]:
     hands = {"left": (1.0,), "right": (-1.0,)}.get(told, (1.0, -1.0))
     ways = ((1.2, 0.0, 1.2), (0.7, 0.02, 1.2), (1.8, 0.05, 1.2), (2.6, 0.1, 1.1), (1.2, 0.1, 0.8), (3.6, 0.2, 1.0))
     return [
-        _drift(role, hand * left, cost, ease, f"steers {'left' if hand > 0 else 'right'}, as told")._replace(
+        change_of_line(role, hand * left, cost, ease, f"steers {'left' if hand > 0 else 'right'}, as told")._replace(
             evades=True
         )
         for left, cost, ease in ways
@@ -195,7 +170,7 @@ def _lane_changes(role: Role, further_m: Sequence[float]) -> list[Drift]:
     found = []
     for ease, cost in ((1.7, 0.0), (1.0, 0.1), (0.6, 0.3), (0.4, 0.45)):
         for more in further_m:
-            drift = _halfway(_drift(role, lane + way * more, cost + abs(more) / 8, ease))
+            drift = _halfway(change_of_line(role, lane + way * more, cost + abs(more) / 8, ease))
             if abs(target - lane) > 0.5 and not is_out(role, target - lane):
                 elsewhere = OTHER_LANE_COST if role.actor.lane is not None else 0.0
                 found.append(drift._replace(before_m=target - lane, cost=drift.cost + elsewhere))
@@ -235,15 +210,10 @@ def _maneuver_shift(role: Role) -> float | None:
     }.get(role.actor.maneuver)
 
 
-def _drift(role: Role, left_m: float, cost: float, ease: float, note: str = "") -> Drift:
-    """A drift as long as its lateral acceleration allows: ease 1 is hard, more is gentler; longer on snow and ice."""
-    dry = ramp_length_m(left_m, ease * usual_speed(role), SWERVE_MPS2)
-    length = min(shift_length_m(role, left_m, ease), max(room_before_m(role), dry))
-    return Drift(cost, left_m, length, role.place.station_m, note=note)
-
-
 def _in_lane(role: Role) -> list[Drift]:
-    return [_drift(role, left, cost, 1.7) for left, cost in ((0.5, 0.1), (-0.5, 0.1), (1.0, 0.25), (-1.0, 0.25))]
+    return [
+        change_of_line(role, left, cost, 1.7) for left, cost in ((0.5, 0.1), (-0.5, 0.1), (1.0, 0.25), (-1.0, 0.25))
+    ]
 
 
 def _other_lanes(role: Role) -> list[Drift]:
@@ -263,10 +233,10 @@ def _swerves(role: Role) -> list[Drift]:
     note = HEAD_ON if comes_against(role) and (role.side, role.other_side) == ("front", "front") else LEAVES
     if place.apart_m > 1.2 and abs(math.sin(place.angle_rad)) < 0.5 and abs(place.aside_m) < 16:
         for extra, cost in ((0.0, 0.3), (0.7, 0.33), (-0.7, 0.33), (1.4, 0.36), (-1.4, 0.36)):
-            found.append(_drift(role, place.aside_m + extra, cost, 1.3, note))
+            found.append(change_of_line(role, place.aside_m + extra, cost, 1.3, note))
     found += _from_beside(role)
     for left, cost in ((1.8, 0.4), (-1.8, 0.4), (3.3, 0.6), (-3.3, 0.6)):
-        found.append(_drift(role, left, cost, 1.0, _SWERVES))
+        found.append(change_of_line(role, left, cost, 1.0, _SWERVES))
     return found
 
 
@@ -282,13 +252,15 @@ def _from_beside(role: Role) -> list[Drift]:
         return []
     elsewhere = OTHER_LANE_COST if role.actor.lane is not None else 0.35
     cost, note = (0.25, "") if abs(before) < 0.5 else (elsewhere, FROM_OTHER_LANE)
-    easy = [_drift(role, -beside, cost + more, ease, note) for ease, more in ((1.7, 0.0), (0.8, 0.15), (0.5, 0.3))]
+    easy = [
+        change_of_line(role, -beside, cost + more, ease, note) for ease, more in ((1.7, 0.0), (0.8, 0.15), (0.5, 0.3))
+    ]
     return [_halfway(drift)._replace(before_m=before) for drift in easy]
 
 
 def lines_to(role: Role, lefts_m: Sequence[float]) -> list[Drift]:
     """Lines that leave the own one by some distances to the left, the nearest first."""
-    return [_drift(role, left, abs(left) / 10, 1.3, LEAVES) for left in sorted(lefts_m, key=abs)]
+    return [change_of_line(role, left, abs(left) / 10, 1.3, LEAVES) for left in sorted(lefts_m, key=abs)]
 
 
 def homing(role: Role) -> list[Drift]:
@@ -296,5 +268,5 @@ def homing(role: Role) -> list[Drift]:
     place, lines = role.place, _from_beside(role)[:2] or drifts(role)[:2]
     if place.apart_m < 0.8:
         return lines
-    bent = _drift(role, math.hypot(place.ahead_m, place.aside_m), 0.6, 1.3, _OFF_COURSE)
+    bent = change_of_line(role, math.hypot(place.ahead_m, place.aside_m), 0.6, 1.3, _OFF_COURSE)
     return [*lines, bent._replace(left_m=place.aside_m, ahead_m=place.ahead_m or 1e-6)]

@@ -22,7 +22,6 @@ from sgcad_core.planner.actor_plan import (
     Role,
     Twist,
     facing,
-    is_beside,
     is_standing,
     starts_at_m,
     usual_speed,
@@ -37,6 +36,7 @@ from sgcad_core.planner.lines.box_angles import aiming, skids, slides, spins
 from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.path import Path, ramp, ramp_length_m, widened_bends
 from sgcad_core.planner.lines.turning import corner_lines
+from sgcad_core.planner.long_things import corner_m, runs_along
 from sgcad_core.planner.motion import HARD_MPS2, Motion, Pace, drive, stand
 from sgcad_core.planner.stationary_actors import (
     any_angle,
@@ -47,7 +47,6 @@ from sgcad_core.planner.stationary_actors import (
     stand_offs,
     steps_aside,
 )
-from sgcad_core.records.specs import Area
 
 _SWING_ASIDE_M = 5.0
 """Lateral room for steering aside; beyond it the speed is reduced."""
@@ -253,18 +252,16 @@ def standing(option: Option) -> Motion:
 
 
 def in_the_way(option: Option, other: Option) -> Motion:
-    """Places for an object along the line that another actor takes, `left_m` beside it."""
-    path = other.motion.path
+    """Places for an object along the line that another actor takes, `left_m` beside it; a long one faces the road, not
+    the box that comes, and lies beside the corner that meets it."""
+    path, road, role = other.motion.path, other.role.course.path, option.role
+    if runs_along(role.actor):
+        along = np.interp(path.s_m, road.s_m, road.heading_rad)
+        out = along + option.twist.angle_rad + (facing(role.side) if role.side else 0.0) + math.pi
+        reach = corner_m(other.role.size, other.role.side) + role.size[0] / 2
+        path = path.displaced(reach * np.column_stack((np.cos(out), np.sin(out))))
+        path = replace(path, heading_rad=along)
     return placed_along(option.role, option.drift, option.twist, path, stand(path, other.role.place.station_m))
-
-
-def in_path_of(option: Option, other: Motion, side: Area) -> Motion:
-    """Places for an object at one side of another motion's box, enumerated by that motion's own time."""
-    out = other.path.heading_rad + facing(side)
-    reach = (other.size[1] if is_beside(side) else other.size[0]) / 2 + 0.3 * option.role.size[0]
-    beside = other.path.displaced(reach * np.column_stack((np.cos(out), np.sin(out))))
-    beside = replace(beside, heading_rad=out)
-    return placed_along(option.role, option.drift, option.twist, beside, (other.time_s, other.station_m))
 
 
 def _begins(role: Role, drift: Drift) -> float:
@@ -280,7 +277,8 @@ def _pace(role: Role, option: Option) -> Pace:
     speed = usual_speed(role) * pacing.factor
     usual = 6.5 if role.actor.maneuver != "u_turn" else 4.5
     curve = max(usual * pacing.factor, speed if told else 3.0)
-    hard = told or bool(option.drift.note or option.twist.note or option.dodge or option.drift.earlier)
+    drift = option.drift
+    hard = told or any((drift.note, option.twist.note, option.dodge, drift.earlier, drift.yaw_rad))
     pace = Pace(speed, curve, starts_at_m(role, pacing), grip_mps2=role.grip_mps2, hard=hard)
     slows = role.actor.maneuver == "slowing" and not role.untouched
     if not (slows or role.told.brakes):

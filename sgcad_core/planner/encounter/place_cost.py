@@ -8,11 +8,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, along_with, line_m
 from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING, stop_m, turns_off
-from sgcad_core.planner.lines.departures import departs, in_a_mouth, on_the_road
+from sgcad_core.planner.lines.axle_to_box import offsets
+from sgcad_core.planner.lines.departures import departs, has_median, in_a_mouth, on_the_road
 from sgcad_core.planner.lines.path import Path
 
 _ZONE_M = 12.0
@@ -28,6 +30,9 @@ _OUT_OF_GORE, _INTO_GORE_M = 0.5, 8.0
 """Cost of each metre between the encounter and the gore of one actor, and the distance into the gore."""
 _BEFORE_TURN_M = 12.0
 """Distance before a turn at which the box still points along the road: it starts to turn before the junction."""
+_OVER_MEDIAN, _RAIL_SLACK_M, _CLEARLY_OFF_M = 1.5, 0.3, 0.4
+"""Cost of meeting what stands in the median in the lanes beyond it, and how far it may reach there; by which the front
+of a vehicle that meets it is off its lanes at least."""
 _IN_MOUTH = 0.6
 """Cost of an encounter beside the road where another road joins, for one that leaves the road."""
 _WAITS_BEFORE_M = 8.0
@@ -69,11 +74,25 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
         penalty = penalty + _UNMOVED * _unmoved(role, path, drift)
     if departs(maneuver, role.told.departs):
         aside = drift.profile(path.s_m)
+        if role.other_long_m:
+            aside, over = _front_and_rail(role, path)
+            penalty = penalty + _OVER_MEDIAN * over
         penalty = penalty + _ON_THE_ROAD * on_the_road(role.course, aside)
         penalty = penalty + _IN_MOUTH * in_a_mouth(role.course, path.s_m, aside)
     if drift.evades:
         penalty = penalty + _UNSTEERED * (np.abs(drift.profile(path.s_m) - drift.before_m) < _STEERED_M)
     return penalty
+
+
+def _front_and_rail(role: Role, path: Path) -> tuple[Floats, NDArray[np.bool_]]:
+    """(n,) how far to the left of its line the front of a vehicle is that meets what runs along the road, and whether
+    that lies beyond the median."""
+    course = role.course
+    angle = path.heading_rad - np.interp(path.s_m, course.path.s_m, course.path.heading_rad)
+    front = offsets(course.path, path, path.s_m)[1] + role.size[0] / 2 * np.sin(angle)
+    met = front + np.sign(angle) * role.size[1] / 2 * np.cos(angle)
+    room = course.own_left_m + max(course.median_m - role.other_long_m, course.median_m / 2) + _RAIL_SLACK_M
+    return front - np.sign(angle) * _CLEARLY_OFF_M, (met > room) & has_median(course) & (met < course.left_edge_m)
 
 
 def _unmoved(role: Role, path: Path, drift: Drift) -> Floats:

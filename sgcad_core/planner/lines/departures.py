@@ -22,8 +22,8 @@ from sgcad_core.records.course import DepartureSide
 
 OFF_ROAD_M = 4.0
 """From the edge of the road to a vehicle that has left it."""
-LONG_AT_M = 1.5
-"""The same to one that meets what runs along the road, as guardrails and barriers do."""
+_RAIL_AT_M = 3.2
+"""From there to what runs along the road, as guardrails and barriers do, where there is room."""
 DEPARTURES: dict[Maneuver, int] = {"departing_road_left": 1, "departing_road_right": -1}
 """Maneuvers off the road, and the side: 1 to the left."""
 SWERVE_MPS2 = 6.0
@@ -79,25 +79,40 @@ def departure_sides(course: Course, station_m: float, told: DepartureSide) -> tu
     return (1, -1) if bend < -_BEND_RAD else (-1, 1)
 
 
+def has_median(course: Course) -> bool:
+    """Whether something lies between the two directions."""
+    return course.median_m > _LEAST_MEDIAN_M
+
+
 def aside_m(course: Course, side: int, off_m: float = OFF_ROAD_M) -> float:
     """How far to the left of its lane's line a vehicle is that has left the road on a side, metres: in the median where
     there is one, else beyond the other direction; `off_m`: from the edge of the road."""
     if side < 0:
         return -(course.right_edge_m + off_m)
-    if course.median_m > _LEAST_MEDIAN_M:
+    if has_median(course):
         return course.own_left_m + min(max(course.median_m / 2, _BESIDE_M), off_m)
     return course.left_edge_m + off_m
 
 
+def rail_m(course: Course, side: int, depth_m: float) -> float:
+    """How far to the left of its lane's line the face of a thing of some depth lies that runs along the road on a side:
+    within the median where there is one, else beyond the edge of the road, metres."""
+    if side < 0:
+        return -(course.right_edge_m + _RAIL_AT_M)
+    if has_median(course):
+        return course.own_left_m + min(max(course.median_m - depth_m, course.median_m / 2), _RAIL_AT_M)
+    return course.left_edge_m + _RAIL_AT_M
+
+
 def left_of_road_m(course: Course) -> float:
     """How far to the left of its lane's line the road ends: at the median where there is one, metres."""
-    return course.own_left_m if course.median_m > _LEAST_MEDIAN_M else course.left_edge_m
+    return course.own_left_m if has_median(course) else course.left_edge_m
 
 
 def on_the_road(course: Course, left_m: Floats) -> NDArray[np.bool_]:
     """(n,) whether offsets from its line are still within the edges of the road."""
     within: NDArray[np.bool_] = (left_m < course.left_edge_m) & (-left_m < course.right_edge_m)
-    if course.median_m <= _LEAST_MEDIAN_M:  # the lines between two directions are none
+    if not has_median(course):  # the lines between two directions are none
         return within
     median = (left_m > course.own_left_m) & (left_m < course.own_left_m + course.median_m)
     return within & ~median
@@ -122,6 +137,13 @@ def shift_length_m(role: Role, left_m: float, ease: float) -> float:
 def room_before_m(role: Role) -> float:
     """The way along its road before its place on which a line may change, metres."""
     return role.place.station_m - role.course.first_m - _STILL_S * usual_speed(role)
+
+
+def change_of_line(role: Role, left_m: float, cost: float, ease: float, note: str = "") -> Drift:
+    """A change as long as its lateral acceleration allows: ease 1 is hard, more is gentler; longer on snow and ice."""
+    dry = ramp_length_m(left_m, ease * usual_speed(role), SWERVE_MPS2)
+    length = min(shift_length_m(role, left_m, ease), max(room_before_m(role), dry))
+    return Drift(cost, left_m, length, role.place.station_m, note=note)
 
 
 def still_leaving(role: Role, drift: Drift, ease: float) -> Drift:

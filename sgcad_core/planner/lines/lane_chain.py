@@ -5,8 +5,10 @@ Knows the lane graph and the route; no time, no other actor.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
+from sgcad_core.planner.lines.path import TURN_BACK_M
 from sgcad_core.planner.lines.route import Route, Way, turn_angle
 from sgcad_core.records.specs import Actor
 from sgcad_core.roads.areas.closures import merging_line, taper_of
@@ -14,6 +16,8 @@ from sgcad_core.roads.lane_graph import Connection, Lane, LaneGraph, edge_id, ro
 
 _ONWARD_RAD = 0.6
 """A way that turns less goes straight on."""
+_BACK_RAD = math.radians(140.0)
+"""A way that turns more leads back: into the lane that a vehicle reaches in one sweep."""
 _CHANGES = ("lane_change_left", "lane_change_right", "merge", "overtaking")
 
 
@@ -68,6 +72,9 @@ def _is_center(graph: LaneGraph, way: Way, lane: Lane) -> bool:
 def _next_lane(graph: LaneGraph, way: Way, lane: Lane, onward: Way) -> tuple[Connection | None, Lane]:
     if _is_center(graph, way, lane):
         return _out_of_center(graph, way, lane, onward)
+    if abs(turn_angle(way, onward)) > _BACK_RAD:
+        from_m = lane.shape[-1]
+        return None, min(onward.lanes, key=lambda x: abs(math.dist(x.shape[0], from_m) - 2 * TURN_BACK_M))
     between = [c for c in graph.leaving(way.id, lane.index) if c.to_edge == onward.id]
     by_index = {other.index: other for other in onward.lanes}
     between = [c for c in between if c.to_lane in by_index]

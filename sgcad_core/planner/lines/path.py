@@ -20,6 +20,8 @@ from sgcad_core.geometry.plane import Floats, arc_lengths, resample
 STEP_M = 0.5
 TURN_BACK_M = 5.6
 """Radius of the rear axle in a U-turn: that of a car with a turning circle of about 11 m between curbs."""
+_SWING_OUT_M = 0.8
+"""How far a vehicle swings to the right within its lane before such a turn."""
 EXTENSION_M = 320.0
 """Straight run before and behind the drawn line: 9 s at 80 mph."""
 _EXTENSION_STEP_M = 4.0
@@ -230,24 +232,27 @@ def bezier(start: Floats, start_rad: float, end: Floats, end_rad: float, stretch
 
 
 def turned_back(start: Floats, start_rad: float, end: Floats, radius_m: float = TURN_BACK_M) -> Floats:
-    """(m, 2) a turn by 180 degrees to the left onto a parallel line: out to the right, around, and back in.
+    """(m, 2) a turn by 180 degrees to the left onto a parallel line: slightly out to the right, around, and back in.
 
-    Three arcs of one radius: out by b, around by pi + 2 b, in by b, where 2 cos b - 1 = gap / (2 radius) (the symmetric
-    case of L. E. Dubins, 1957); one half circle where the lines lie far enough apart.
+    Three arcs of one radius (L. E. Dubins, 1957): out by a, around by pi + a + b, in by b, where cos a + cos b - 1 =
+    gap / (2 radius); a is no more than there is room for in a lane. One half circle where the lines lie far enough
+    apart.
     """
     c, s = math.cos(start_rad), math.sin(start_rad)
     gap = max(float((end - start) @ np.array([-s, c])), 0.0)
     wide = max(radius_m, gap / 2)
-    out = math.acos(min(max((gap / (2 * wide) + 1) / 2, 0.0), 1.0))
-    turns = np.array([-out, math.pi + 2 * out, -out])
+    near = gap / (2 * wide)
+    out = min(math.acos(min(max((near + 1) / 2, 0.0), 1.0)), math.acos(1 - _SWING_OUT_M / (2 * wide)))
+    back = math.acos(min(max(near + 1 - math.cos(out), -1.0), 1.0))
+    turns = np.array([-out, math.pi + out + back, -back])
     bends = [np.full(max(2, math.ceil(abs(a) * wide / STEP_M)), a) for a in turns if abs(a) > 1e-6]
     steps = np.concatenate([a / len(a) for a in bends])
     lengths = np.abs(steps) * wide
     heading = start_rad + np.cumsum(steps) - steps / 2
     way = np.cumsum(np.column_stack((np.cos(heading), np.sin(heading))) * lengths[:, None], axis=0)
-    arcs = start + np.vstack((np.zeros(2), way))
-    run: Floats = np.vstack((arcs, end)) if (end - arcs[-1]) @ np.array([c, s]) < -1.0 else arcs
-    return run
+    on = max(2 * wide * (math.sin(back) - math.sin(out)), 0.0) * np.array([c, s])  # it comes in as far behind
+    arcs = np.vstack((start, start + on + np.vstack((np.zeros(2), way)) if on.any() else start + way))
+    return np.vstack((arcs, end)) if (end - arcs[-1]) @ np.array([c, s]) < -1.0 else arcs
 
 
 def end_heading(points: Floats, *, at_end: bool, over_m: float = 8.0) -> float:

@@ -54,6 +54,19 @@ def off_and_back(told: Courses, to_things: Iterable[str]) -> Courses:
     return {who: replace(course, moves=ways.get(who, course.moves)) for who, course in told.items()}
 
 
+def off_on_one_side(told: Courses, to_things: Iterable[str]) -> Courses:
+    """The stated courses, where vehicles that leave the road on a told side, meet a thing there (`to_things`) and come
+    to rest off the road do so on that side."""
+    found = dict(told)
+    for who in (name for name in to_things if name in told):
+        course = told[who]
+        beside = course.rest.where in ("off_road", "shoulder") and course.rest.side is None
+        side = course.departs
+        if beside and not course.moves and side is not None and side != "either":
+            found[who] = replace(course, rest=replace(course.rest, side=side))
+    return found
+
+
 def last_move(role: Role) -> Move | None:
     """The move in which it meets its end; None where no several moves are told, or its maneuver has a line of its
     own."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from sgcad_core.kinds import actor_kind, kind_of_letter
 from sgcad_core.reading.contacts.contact_records import ContactMention
@@ -16,6 +16,9 @@ from sgcad_core.reading.motion.clauses import Statement
 from sgcad_core.reading.text.compass import OPPOSITE_HAND, between, compass_of, turned
 from sgcad_core.records.course import Hand
 from sgcad_core.records.specs import ActorKind, Area, Compass
+
+Lies = Literal["in", "across"]
+"""How a thing lies in the road."""
 
 
 class WalkDirection(NamedTuple):
@@ -82,6 +85,8 @@ class OtherFacts:
     word: str
     hand: Hand | None = None
     """On which hand of the vehicle that meets it a thing along the road lies, where that is told."""
+    lies: Lies | None = None
+    """Whether a thing lies in the road, or across it, where that is told."""
 
 
 def others(

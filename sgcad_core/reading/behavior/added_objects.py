@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from itertools import islice
 
 from sgcad_core.kinds import RAMP, actor_kind
-from sgcad_core.reading.actors.people_objects import OtherFacts, kind_of_word
+from sgcad_core.reading.actors.people_objects import Lies, OtherFacts, kind_of_word
 from sgcad_core.reading.contacts.contact_records import leading_end
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.layout.road_ways import Way, exits, turn_of, ways_of
@@ -46,7 +46,10 @@ _FLAT = frozenset((
     "cover", "manhole", "drain", "grate", "bump", "hump", "plate",
 ))  # fmt: skip
 """Things on or in the ground: a vehicle drives over them, and they stay."""
-_USUAL_M = (0.4, 0.4)
+_USUAL_M, _FALLEN_M = (0.4, 0.4), (0.5, 7.0)
+"""Depth and width of other things, and of one that has fallen across the road."""
+_LEAST_RUN_M = 4.0
+"""Width from which a thing is so long that it can be struck twice."""
 _LONG_M = 1.5
 """Width from which a thing stands along the road."""
 
@@ -59,25 +62,31 @@ def with_roadside(
     Contacts stand in told order. `most`: actors and contacts in all.
     """
     joined, told = list(actors), _Told(len(contacts))
-    words = {other.id: other.word for other in facts.others}
+    words, lying = {other.id: other.word for other in facts.others}, {other.id: other.lies for other in facts.others}
     for impact in islice(_again(facts, contacts), 1):
         told.add(impact.after, _once_more(impact, contacts[0]))
     for vehicle, other, impact in _struck(facts, {a.id for a in actors}):
         driver = next((a for a in actors if a.id == vehicle), None)
         if driver is None or len(joined) >= most[0] or len(told.further) + len(contacts) >= most[1]:
             continue
-        joined.append(_standing(other, driver, endwise=_is_met_endwise(impact, contacts)))
+        if all(a.id != other.id for a in joined):
+            joined.append(_standing(other, driver, endwise=_is_met_endwise(impact, contacts)))
         words[other.id] = other.word
         told.add(impact.after, Contact(
             striker=vehicle, struck=other.id, striker_area=impact.actor_area or leading_end(driver.maneuver),
             struck_area="front" if actor_kind(other.kind).thing else "left",
         ))  # fmt: skip
-    return tuple(_held(actor, words.get(actor.id, "")) for actor in joined), tuple(told.merged(contacts))
+    held = (_held(actor, words.get(actor.id, ""), lying.get(actor.id)) for actor in joined)
+    return tuple(held), tuple(told.merged(contacts))
 
 
-def _held(actor: Actor, word: str) -> Actor:
-    """The actor, as large as things of its name are; firm, loose or flat where things of that name are."""
+def _held(actor: Actor, word: str, lies: Lies | None = None) -> Actor:
+    """The actor, as large as things of its name are; firm, loose or flat where things of that name are. What lies in
+    the road is a piece that is driven over, as wide as the road where it lies across it."""
     named = word.lower().rpartition(" ")[2]
+    if actor.record.thing and lies and (lies == "across" or named not in _FIRM):
+        across = {"length_m": _FALLEN_M[0], "width_m": _FALLEN_M[1]} if lies == "across" else {}
+        return actor.model_copy(update={"loose": True, "firm": False, **across})
     thing = actor.record.thing and not actor.length_m
     size = _SIZE_M.get(named) or _SIZE_M.get(named.rstrip("s"))
     if thing and size:
@@ -127,12 +136,26 @@ def _once_more(impact: ImpactTold, first: Contact) -> Contact:
 def _struck(facts: CrashFacts, taken: set[str]) -> Iterator[tuple[str, OtherFacts, ImpactTold]]:
     """(vehicle, what it strikes, as told), in order; the first contact of a lone vehicle is none of these."""
     taken, pairs = set(taken), {v.id for v in facts.vehicles}
+    met: dict[tuple[str, str], tuple[OtherFacts, ImpactTold]] = {}
     for number, impact in enumerate(facts.impacts):
         if impact.other in pairs or (number == 0 and impact.other == _first_thing(facts)):
             continue
-        other = _known(facts, impact.other, taken)
+        before = met.get((impact.actor, impact.other))
+        same = before[0] if before and _runs_on(before[1], impact) else None
+        other = same or _known(facts, impact.other, taken)
         taken.add(other.id)
+        met[impact.actor, impact.other] = other, impact
         yield impact.actor, other, impact
+
+
+def _runs_on(before: ImpactTold, impact: ImpactTold) -> bool:
+    """Whether a vehicle strikes one thing that runs along the road a second time, with another side."""
+    size = _SIZE_M.get(impact.other.split()[-1], _USUAL_M)
+    return (
+        size[1] > _LEAST_RUN_M
+        and None not in (before.actor_area, impact.actor_area)
+        and (before.actor_area != impact.actor_area)
+    )
 
 
 def _first_thing(facts: CrashFacts) -> str | None:

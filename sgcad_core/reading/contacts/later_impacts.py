@@ -101,21 +101,32 @@ def _of_mention(mention: ContactMention, roster: Roster) -> ImpactRead | None:
 
 
 def _in_order(texts: Mapping[int, str], acts: Sequence[ImpactRead], mentions: Sequence[ImpactRead]) -> list[ImpactRead]:
-    """Both readings of things in the order of the text; one that both have is the act, which knows its vehicle."""
+    """Both readings of things in the order of the text; one that both have is the act, which knows its vehicle. A
+    sentence may tell further contacts with the same thing, on other sides."""
+    sides: dict[tuple[int, str, str], list[Area | None]] = {}
+    for read in mentions:
+        sides.setdefault(_key(read), []).append(read.impact.actor_area)
+    found = [_with_side(read, sides) for read in acts]
+    seen = {(*_key(read), read.impact.actor_area) for read in found}
     acted = {(read.source.number, read.impact.other) for read in acts}
-    sides = {(read.source.number, read.impact.actor, read.impact.other): read.impact.actor_area for read in mentions}
-    found = [
-        *(_with_side(read, sides) for read in acts),
-        *(read for read in mentions if (read.source.number, read.impact.other) not in acted),
-    ]
+    for read in mentions:
+        area = read.impact.actor_area
+        again = len(set(sides[_key(read)])) > 1 and area is not None and (*_key(read), area) not in seen
+        if again or (read.source.number, read.impact.other) not in acted:
+            found.append(read)
     return sorted(found, key=lambda read: _place(read, texts))
 
 
-def _with_side(read: ImpactRead, sides: Mapping[tuple[int, str, str], Area | None]) -> ImpactRead:
-    """An act with the side that the same contact has by its verb of touching, where it has none of its own."""
-    impact = read.impact
-    side = impact.actor_area or sides.get((read.source.number, impact.actor, impact.other))
-    return read._replace(impact=replace(impact, actor_area=side))
+def _key(read: ImpactRead) -> tuple[int, str, str]:
+    """The sentence of a contact, and the two that touch."""
+    return read.source.number, read.impact.actor, read.impact.other
+
+
+def _with_side(read: ImpactRead, sides: Mapping[tuple[int, str, str], Sequence[Area | None]]) -> ImpactRead:
+    """An act with the side that the same contact has by its verb of touching, the first one, where it has none of its
+    own."""
+    side = read.impact.actor_area or next(iter(sides.get(_key(read), ())), None)
+    return read._replace(impact=replace(read.impact, actor_area=side))
 
 
 def with_resting_contacts(impacts: Sequence[ImpactRead], read: CoursesRead, last: int = 1) -> tuple[ImpactRead, ...]:
@@ -134,15 +145,17 @@ def with_resting_contacts(impacts: Sequence[ImpactRead], read: CoursesRead, last
 
 
 def _once(things: Sequence[ImpactRead]) -> Iterator[ImpactRead]:
-    """Impacts without retellings: the same object again in a later paragraph is the same impact."""
-    last: dict[tuple[str, str], int] = {}
+    """Impacts without retellings: the same object again in a later paragraph is the same impact;
+    on another side in the same sentence it is a further one."""
+    last: dict[tuple[str, str], tuple[int, Area | None]] = {}
     for read in things:
-        key = read.impact.actor, read.impact.other
-        number = read.source.number
-        further = number == last.get(key) and rule("course_impacts.one_more").search(read.source.words)
-        if key not in last or number - last[key] == 1 or further:
+        key, area = (read.impact.actor, read.impact.other), read.impact.actor_area
+        number, (before, side) = read.source.number, last.get(key, (-1, None))
+        one_more = rule("course_impacts.one_more").search(read.source.words) is not None
+        further = number == before and (one_more or (None not in (area, side) and area != side))
+        if key not in last or number - before == 1 or further:
             yield read
-        last[key] = number
+        last[key] = number, area
 
 
 def _things(segment: Segment) -> Iterator[ImpactRead]:

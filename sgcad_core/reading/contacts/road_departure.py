@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
+from sgcad_core.reading.actors.people_objects import Lies
 from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.language import Rule, rule
 from sgcad_core.reading.motion.clauses import Statement
@@ -55,6 +56,14 @@ def hand_of_thing(word: str, texts: Sequence[str]) -> Hand | None:
             if m[names] and m[names].lower().rpartition(" ")[2] in word:
                 return "right" if m[side].lower() == "right" else "left"
     return "left" if any(m["between"] and m["between"].lower() in word for m in told) else None
+
+
+def lies_in_road(word: str, texts: Sequence[str]) -> Lies | None:
+    """Whether texts tell that a thing of that name lies in the road, or across it."""
+    for m in (m for text in texts for m in rule("departures.lies_in_road").finditer(text)):
+        if m["thing"].lower() in word.lower().split():
+            return "across" if m["how"].lower() == "across" else "in"
+    return None
 
 
 @dataclass

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from sgcad_core.reading.actors.people_objects import WalkDirection
+from sgcad_core.reading.actors.people_objects import Lies, WalkDirection
 from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.contacts.contact_records import ContactFacts, ContactMention
 from sgcad_core.reading.contacts.crash_course import CoursesRead, ImpactRead
@@ -48,6 +48,8 @@ class CrashTold:
     """Pairs that the text tells to have nearly touched."""
     untouched: Untouched | None = None
     """Of a report that tells no contact: what happens instead."""
+    lying: Mapping[str, Lies] = field(default_factory=dict)
+    """How things lie in the road, by their word in `contact_mentions`, where that is told."""
 
 
 @dataclass

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from sgcad_core.kinds import JOINING
+from sgcad_core.kinds import JOINING, actor_kind
 from sgcad_core.reading.contacts.contact_records import AREAS
 from sgcad_core.reading.inference.inference_state import QUARTER_DEG
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
@@ -223,3 +223,23 @@ def by_id(sides: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
 def vehicles_of(crash: CrashFacts) -> frozenset[str]:
     """Ids of all actors that the rules know."""
     return frozenset([*(v.id for v in crash.vehicles), *(o.id for o in crash.others)])
+
+
+def sayable(heard: Claims, crash: CrashFacts) -> Claims:
+    """The claims without kinds of those that the rules read as a kind of which the embedded model knows no word, and
+    without departures of vehicles that first strike what lies in the road."""
+    kinds = {v.id: v.kind for v in crash.vehicles} | {other.id: other.kind for other in crash.others}
+    beyond = {f"kind.{name}" for name, kind in kinds.items() if not actor_kind(kind).learned}
+    beyond |= departures_past_the_road(heard, crash)
+    return {key: claim for key, claim in heard.items() if key not in beyond}
+
+
+def departures_past_the_road(heard: Claims, crash: CrashFacts) -> set[str]:
+    """Keys of departures from the road of vehicles that first strike what lies in it."""
+    lying, found = {other.id for other in crash.others if other.lies}, set()
+    for vehicle in crash.vehicles:
+        first, key = crash.first_contact(vehicle.id), f"maneuver.{vehicle.id}"
+        departs = key in heard and str(heard[key].value).startswith("departing")
+        if departs and first is not None and first.struck in lying:
+            found.add(key)
+    return found

@@ -15,7 +15,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
-from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, T, actor_kind
+from sgcad_core.kinds import DRIVEWAY, FOUR_LEG, RAMP, T
 from sgcad_core.reading.actors.people_objects import OtherFacts
 from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
@@ -26,7 +26,14 @@ from sgcad_core.reading.roads.road_facts import RoadFact, RoadFacts, uncounted
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.second_reader.answered_values import TakenValue, as_taken, controlled, facts_of, model_claims
 from sgcad_core.reading.second_reader.combiner import FILLS, model_right, needed
-from sgcad_core.reading.second_reader.field_claims import Claim, Claims, kind_of, rules_claim, vehicles_of
+from sgcad_core.reading.second_reader.field_claims import (
+    Claim,
+    Claims,
+    kind_of,
+    rules_claim,
+    sayable,
+    vehicles_of,
+)
 from sgcad_core.reading.second_reader.fuse_numbered import moved
 from sgcad_core.reading.second_reader.learned_support import support_of
 from sgcad_core.records.facts import Fact
@@ -51,7 +58,7 @@ def fused_with_answer(reading: Reading, opinion: Opinion) -> Reading:
     """The reading with what the model's answers to the whole report know better; as it is where they are of no use."""
     if opinion.answered is None or reading.crash.unnumbered or reading.crash.near_crash:
         return reading
-    heard = _sayable(model_claims(opinion.answered), reading.crash)
+    heard = sayable(model_claims(opinion.answered), reading.crash)
     gap = reading.crash.gap
     if gap is not None:
         reading = _filled(reading, opinion.answered, heard) if gap.unread else reading
@@ -69,13 +76,6 @@ def fused_with_answer(reading: Reading, opinion: Opinion) -> Reading:
     used |= laid | seated.keys()
     facts = [fact for key in taken if key in used for fact in facts_of(key, taken[key], crash)]
     return _told(reading, crash, roads, facts)
-
-
-def _sayable(heard: Claims, crash: CrashFacts) -> Claims:
-    """The claims without kinds of those that the rules read as a kind of which the embedded model knows no word."""
-    kinds = {v.id: v.kind for v in crash.vehicles} | {other.id: other.kind for other in crash.others}
-    beyond = {f"kind.{name}" for name, kind in kinds.items() if not actor_kind(kind).learned}
-    return {key: claim for key, claim in heard.items() if key not in beyond}
 
 
 def _seated(

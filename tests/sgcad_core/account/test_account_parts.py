@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sgcad_core.account.actors import actor_items
 from sgcad_core.account.assumed import assumed_items
 from sgcad_core.account.build import account_of
-from sgcad_core.account.contacts import _evasion_items, contact_items
+from sgcad_core.account.contacts import _evasion_items, actor_items, contact_items
 from sgcad_core.account.inputs import ExecutedCase, is_stated
 from sgcad_core.account.motion import judged, motion_items
 from sgcad_core.account.notes import notes_of

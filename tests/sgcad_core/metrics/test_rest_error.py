@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sgcad_core.metrics.rest_error import near_m, rest_errors
+from sgcad_core.metrics.rest_error import near_m, rest_errors, whirls
 from sgcad_core.records.course import AT_IMPACT_M, RestTold
 from sgcad_core.roads.lane_positions import Position
 from sgcad_core.roads.surface import RoadSurface, road_surface
@@ -97,3 +97,13 @@ def test_in_the_intersection_is_within_the_ends_of_the_lanes(crossing, place, in
 def test_a_corner_is_one_quarter_of_the_junction(crossing, side, place, fits) -> None:
     found = rest_errors(RestTold(where="off_road", side=side), np.array([[*place, 0.0]]), 0.0, crossing)
     assert found.right()["side"] == fits
+
+
+@pytest.mark.parametrize(("way_m", "turned_deg", "whirls_deg"), [(2.0, 120, 120), (40.0, 120, 30), (0.0, 0, 0)])
+def test_a_whirl_is_a_rotation_within_a_few_metres(way_m, turned_deg, whirls_deg):
+    share = np.linspace(0.0, 1.0, 97)
+    way = np.column_stack((way_m * share, 0 * share, np.radians(turned_deg) * share))
+    found = np.degrees(whirls(np.stack((way, 0 * way), axis=1)))
+    assert found[0] <= whirls_deg + 1e-6
+    assert found[0] >= 0.9 * whirls_deg or way_m > 3.5
+    assert found[1] == 0.0

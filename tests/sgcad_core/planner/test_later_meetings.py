@@ -9,7 +9,10 @@ import pytest
 
 from sgcad_core.geometry.plane import Box, box_gaps, contact_area
 from sgcad_core.planner import Plan, plan
+from sgcad_core.planner.aftermath.later_contacts import expect_later_contacts, strikes_of
+from sgcad_core.planner.scene import Scene
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
+from sgcad_core.roads.surface import road_surface
 from tests.sgcad_core.planner.crash_scenes import network
 
 
@@ -110,3 +113,29 @@ def touching_sides(behavior: BehaviorSpec, made: Plan, one: str, other: str) -> 
     at = int(np.flatnonzero(box_gaps(tracks[one], sizes[one], tracks[other], sizes[other]) <= 0)[0])
     boxes = [Box.at(tracks[name][at], sizes[name]) for name in (one, other)]
     return contact_area(*boxes), contact_area(*reversed(boxes))
+
+
+def test_those_that_are_pushed_into_one_another_at_a_light_stand_before_the_junction() -> None:
+    cars = (car(1, "S", exit_road="N"), *(car(n, "S", "stopped", exit_road="N") for n in (2, 3, 4)))
+    told = ("V1 front V2 back", "V2 front V3 back", "V3 front V4 back")
+    behavior, graph = BehaviorSpec(actors=cars, contacts=hits(*told)), network("four_leg")
+    made = plan(behavior, graph)
+    assert order(behavior, made) == [("V1", "V2"), ("V2", "V3"), ("V3", "V4")]
+    (junction,) = road_surface(graph).junctions
+    for one in made.trajectories[1:]:
+        assert junction.out_m(np.array([[one.x_m[0], one.y_m[0] + 2.3 - 1.0]]))[0] > 0.0, one.actor
+
+
+def test_a_rail_is_struck_a_second_time_with_another_side() -> None:
+    told = hits("V1 left V2 right", "V1 front O1 front", "V1 right O1 front")
+    scene = Scene(100, 40)
+    expect_later_contacts(scene, told)
+    pair = frozenset(("V1", "O1"))
+    assert scene.again == {pair}
+    assert scene.sides[pair] == {"V1": "right", "O1": "front"}
+    rail = Actor(id="O1", kind="object", road="S", direction="forward", maneuver="stopped", length_m=0.6,
+                 width_m=14.0, firm=True)  # fmt: skip
+    cars = (car(1, "S", "lane_change_left"), car(2, "S"), rail)
+    (strike,) = strikes_of(BehaviorSpec(actors=cars, contacts=told), told)
+    assert strike.goes_on
+    assert not strike.glances, "the vehicle passes through it"

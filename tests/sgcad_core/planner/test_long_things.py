@@ -10,10 +10,13 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from sgcad_core.geometry.plane import Box, contact_area, overlap
+from sgcad_core.planner.aftermath.rails import stands_on_road
 from sgcad_core.planner.long_things import beside, corner_side, hand_of_side, is_long, meeting_angle, turned_to
 from sgcad_core.planner.plan import plan
-from sgcad_core.records.course import CourseTold
+from sgcad_core.records.course import CourseTold, RestTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
+from sgcad_core.roads.surface import road_surface
+from tests.sgcad_core.planner.crash_scenes import network
 from tests.sgcad_core.planner.test_departures import CAR, roads
 
 RAIL = Actor(
@@ -72,3 +75,51 @@ def test_a_vehicle_that_leaves_the_road_slides_along_a_guardrail(departs, side):
     assert off_road < math.radians(30), "it stands across the road"
     k = round(made.contact.t_s / 0.05)
     assert math.hypot(car.x_m[-1] - car.x_m[k], car.y_m[-1] - car.y_m[k]) > 5.0, "it stops dead"
+
+
+@pytest.mark.parametrize("departs", ["left", "right"])
+@pytest.mark.parametrize("side", ["front", "left", "right"])
+def test_what_runs_along_the_road_stands_parallel_to_it_and_beside_its_lanes(departs, side):
+    if side not in ("front", departs):
+        pytest.skip("it lies on the other hand")
+    met = Contact(striker="V1", struck="O1", striker_area=side, struck_area="front")
+    graph = roads()
+    made = plan(BehaviorSpec(actors=(CAR, RAIL), contacts=(met,)), graph, courses={"V1": CourseTold(departs=departs)})
+    rail = made.trajectories[1].pose[:1]
+    assert made.realised
+    assert abs(math.remainder(float(rail[0, 2]), math.pi)) < math.radians(1.0)
+    assert not stands_on_road(road_surface(graph), rail, (0.4, 14.0))[0]
+
+
+def test_a_vehicle_that_leaves_the_road_on_a_side_rests_off_it_on_that_side():
+    met = Contact(striker="V1", struck="O1", striker_area="front", struck_area="front")
+    told = {"V1": CourseTold(departs="right", rest=RestTold(where="off_road"))}
+    car = plan(BehaviorSpec(actors=(CAR, RAIL), contacts=(met,)), roads(), courses=told).trajectories[0]
+    assert car.x_m[-1] > 1.75, "it rests on the road, or beyond it on the left"
+
+
+def test_a_rail_that_is_struck_in_the_lanes_only_is_noted():
+    rail = RAIL.model_copy(update={"road": "W"})
+    rear, ahead = (
+        Actor(id=name, kind="car", road="W", direction="forward", exit_road="E", maneuver="straight", speed_mph=mph)
+        for name, mph in (("V1", 45), ("V2", 25))
+    )
+    contacts = (
+        Contact(striker="V1", struck="V2", striker_area="front", struck_area="back"),
+        Contact(striker="V2", struck="O1", striker_area="front", struck_area="front"),
+    )
+    graph = network("four_leg")
+    made = plan(BehaviorSpec(actors=(rear, ahead, rail), contacts=contacts), graph)
+    stands = stands_on_road(road_surface(graph), made.trajectories[2].pose[:1], (0.4, 14.0))[0]
+    assert any("stands in the lanes" in note for note in made.notes) == stands
+
+
+def test_a_piece_across_the_road_is_driven_over_in_the_lanes():
+    piece = RAIL.model_copy(update={"firm": False, "loose": True, "length_m": 0.5, "width_m": 7.0})
+    met = Contact(striker="V1", struck="O1", striker_area="front", struck_area="front")
+    graph = roads()
+    told = {"V1": CourseTold(rest=RestTold(where="shoulder", side="right"))}
+    car, lying = plan(BehaviorSpec(actors=(CAR, piece), contacts=(met,)), graph, courses=told).trajectories
+    assert road_surface(graph).off(lying.pose[:1, :2])[0][0] < 0.0
+    assert abs(math.sin(float(lying.heading_rad[0]) - math.pi / 2)) < 0.2, "it does not lie across"
+    assert car.y_m[-1] > lying.y_m[0] + 5.0

@@ -80,6 +80,8 @@ def test_a_turn_back_ends_on_the_other_line_and_is_no_tighter_than_told(gap):
     assert arc[-1] == pytest.approx(gap * np.array([-math.sin(0.3), math.cos(0.3)]), abs=0.01)
     assert path.heading_rad[-1] - path.heading_rad[0] == pytest.approx(math.pi, abs=0.01)
     assert np.abs(path.curvature).max() < 1.25 / TURN_BACK_M
+    left = arc @ np.array([-math.sin(0.3), math.cos(0.3)])
+    assert left.min() > -0.85, "it swings out of its lane to the right"
 
 
 def test_bends_that_are_too_tight_are_widened_and_no_others() -> None:

@@ -13,7 +13,7 @@ from sgcad_core.metrics.rest_error import attitude_of, rest_errors
 from sgcad_core.planner import plan
 from sgcad_core.planner.aftermath.ground_friction import Drag, Released, RunOut, apply_friction, run_out_paths
 from sgcad_core.planner.aftermath.impact import body
-from sgcad_core.planner.aftermath.rest_candidates import all_runs, loops
+from sgcad_core.planner.aftermath.rest_candidates import all_runs, loops, odd_ways
 from sgcad_core.records.course import CourseTold, RestTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
 from sgcad_core.roads.surface import road_surface
@@ -234,3 +234,16 @@ def test_no_more_than_half_a_turn_is_taken_to_a_told_facing(mph: int, facing: fl
     _, tracks = planned({"V1": CourseTold(rest=RestTold(facing))}, behavior)
     turned = np.unwrap(tracks["V1"].heading_rad)
     assert np.abs(turned - turned[0]).max() <= math.radians(200.0)
+
+
+def test_ways_that_turn_on_the_spot_or_leave_the_road_before_a_rest_on_it_cost_more() -> None:
+    surface = road_surface(network("straight"))
+    share = np.linspace(0.0, 1.0, 60)
+    along = np.column_stack((1.75 + 0 * share, 40 * share - 20, math.pi / 2 + 0 * share))
+    whirled = np.column_stack((1.75 + 0 * share, 2 * share, math.pi / 2 + 2.5 * share))
+    out = along + np.column_stack((8.0 * np.sin(math.pi * share), 0 * share, 0 * share))
+    ways = np.stack((along, whirled, out), axis=1)
+    onto = odd_ways(CourseTold(rest=RestTold(where="road")), ways, surface)
+    anywhere = odd_ways(CourseTold(), ways, surface)
+    assert (onto > 0.0).tolist() == [False, True, True]
+    assert (anywhere > 0.0).tolist() == [False, True, False]

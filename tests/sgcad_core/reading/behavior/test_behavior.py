@@ -171,6 +171,25 @@ def test_a_piece_in_the_way_is_loose_and_a_tree_firm() -> None:
         assert (thing.loose, thing.firm) == (loose, firm)
 
 
+@pytest.mark.parametrize(("words", "loose", "width_m"), [
+    ("a tree that had fallen across the roadway", True, 7.0), ("a tree", False, 0.5),
+    ("a crate in the roadway", True, None),
+])  # fmt: skip
+def test_what_lies_in_the_road_is_a_piece_of_it(words: str, loose: bool, width_m: float | None) -> None:
+    thing = _actor(_behavior(f"V1 was traveling east. The front of V1 struck {words}.", PLAIN), "O1")
+    assert (thing.loose, thing.firm) == (loose, not loose)
+    assert width_m is None or thing.width_m == width_m
+
+
+def test_one_wall_that_is_struck_with_two_sides_is_one_wall() -> None:
+    found = _behavior(
+        "V1 was traveling east. V2 was traveling east beside V1. The left side of V1 struck the right side of V2. The "
+        "front of V1 contacted a wall, rotated on and contacted the wall a second time with the right side.", PLAIN,
+    )  # fmt: skip
+    struck = [(c.struck, c.striker_area) for c in found.contacts[1:]]
+    assert struck == [("O1", "front"), ("O1", "right")]
+
+
 @pytest.mark.parametrize(("thing", "along_m"), [("guardrail", 14.0), ("wooden fence", 10.0), ("ditch", 12.0)])
 def test_the_first_thing_that_is_struck_is_as_long_as_things_of_its_name(thing: str, along_m: float) -> None:
     found = _behavior(f"V1 was traveling east. V1 departed the road to the right and struck a {thing}.", PLAIN)

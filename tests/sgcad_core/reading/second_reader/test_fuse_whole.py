@@ -11,7 +11,7 @@ from sgcad_core.reading.behavior.behavior import behavior_of_facts
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.reading import Reading, read
 from sgcad_core.reading.second_reader.answered_values import TakenValue, facts_of, model_claims
-from sgcad_core.reading.second_reader.field_claims import KINDS, UNKNOWN_P, Claim, rules_claim
+from sgcad_core.reading.second_reader.field_claims import KINDS, UNKNOWN_P, Claim, departures_past_the_road, rules_claim
 from sgcad_core.reading.second_reader.fuse_whole import SURE, agree, decided, fused_with_answer, same
 from sgcad_core.records.second_reader import Answered, Opinion, Weights
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, Leg, RoadLayout
@@ -404,3 +404,12 @@ def test_whatever_the_model_answers_a_road_comes_out_that_carries_everybody(ends
     found = told(TEXT, answered(layout, road=road, maneuver=maneuver))
     spec = road_spec(layout_of_facts(found.roads))
     assert {actor.id for actor in behavior_of_facts(found.crash, spec).actors} >= {"V1", "V2"}
+
+
+@pytest.mark.parametrize(("text", "kept"), [
+    ("V1 was northbound. The front of V1 struck a ladder in the roadway.", False),
+    ("V1 was northbound. The front of V1 struck a pole.", True),
+])  # fmt: skip
+def test_what_lies_in_the_road_is_not_struck_beside_it(text: str, kept: bool) -> None:
+    heard = {"maneuver.V1": Claim("departing_road_right")}
+    assert departures_past_the_road(heard, read(text).crash) == (set() if kept else {"maneuver.V1"})
