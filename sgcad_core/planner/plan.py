@@ -15,7 +15,6 @@ from functools import cached_property
 from sgcad_core.case.records import ObservedContact, Record, Trajectory
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.actor_plan import Role
-from sgcad_core.planner.aftermath.drive_away import LEAVES_S, drive_away
 from sgcad_core.planner.aftermath.later_contacts import Ending, expect_later_contacts, strikes_of, struck_before
 from sgcad_core.planner.aftermath.rest_fit import Impact
 from sgcad_core.planner.aftermath.second_contact import MISSED
@@ -32,7 +31,8 @@ from sgcad_core.planner.encounter.pacing_choices import ROLLS_IN
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.encounter.try_elsewhere import WholeCourse, least_missed
 from sgcad_core.planner.knocked_aside import drive_over, knock_aside
-from sgcad_core.planner.later_meetings import LaterMeetings
+from sgcad_core.planner.later.drive_away import LEAVES_S, drive_away
+from sgcad_core.planner.later.later_meetings import LaterMeetings
 from sgcad_core.planner.lead_time import lead_alone, lead_of
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.departures import departs, departure_station
@@ -153,14 +153,13 @@ class _Cast:
 
     def usable(self, contacts: Sequence[Contact]) -> list[Contact]:
         """Contacts between two different actors of the behavior."""
-        found: list[Contact] = []
-        for c in contacts:
-            known = c.striker in self.actors and c.struck in self.actors and c.striker != c.struck
-            if known and self.tractors.get(c.striker) != c.struck and self.tractors.get(c.struck) != c.striker:
-                found.append(c)
-            else:
-                self.notes.append(f"contact of {c.striker} and {c.struck} left out: they cannot meet")
-        return found
+        left = [c for c in contacts if not self._can_meet(c.striker, c.struck)]
+        self.notes += (f"contact of {c.striker} and {c.struck} left out: they cannot meet" for c in left)
+        return [c for c in contacts if c not in left]
+
+    def _can_meet(self, one: str, other: str) -> bool:
+        towed = self.tractors.get(one) == other or self.tractors.get(other) == one
+        return {one, other} <= self.actors.keys() and one != other and not towed
 
     # -------------------------------------------------------------- the whole course
     def unfolded(
@@ -241,8 +240,7 @@ class _Cast:
                 self.missed += _MANEUVER_MISSED
             if ROLLS_IN in option.pacing.note:
                 self.missed += _MANEUVER_MISSED
-            unseen = list(unseen_evasion(role.actor.id, role.course, role.told, until))
-            self.notes += unseen
+            self.notes += (unseen := list(unseen_evasion(role.actor.id, role.course, role.told, until)))
             self.missed += len(unseen)
 
     def _runs_on_s(self) -> float:
@@ -284,8 +282,7 @@ class _Cast:
             if role and (note := place_clear(scene, role, passes=bool(scene.tracks) and actor.id not in self.told)):
                 self.notes.append(note)
             track = scene.tracks[actor.id]
-            own = track.own_s if track.motion.standing else track.own_s + scene.contact * STEP_S
-            self._couple(scene, actor.id, own)
+            self._couple(scene, actor.id, track.own_s + scene.contact * STEP_S * (not track.motion.standing))
 
     def alone(self, name: str) -> Role:
         """An actor where nothing is touched: it leaves the road as told."""

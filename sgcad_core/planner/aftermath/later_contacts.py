@@ -18,7 +18,7 @@ from sgcad_core.planner.aftermath.second_contact import MISSED
 from sgcad_core.planner.aftermath.struck_objects import Strike, leave_beside, place_thing
 from sgcad_core.planner.aftermath.told_order import Pair, ToldOrder, pair_of
 from sgcad_core.planner.encounter.off_center import NARROW_M, SHARES, USUAL
-from sgcad_core.planner.later_courses import runs_on, with_run
+from sgcad_core.planner.later.later_courses import runs_on, with_run
 from sgcad_core.planner.long_things import runs_along
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold

@@ -39,7 +39,7 @@ from sgcad_core.planner.aftermath.rest_candidates import (
 from sgcad_core.planner.aftermath.rollover import rolls_over
 from sgcad_core.planner.aftermath.second_contact import WRONG_SIDE, missed_again
 from sgcad_core.planner.aftermath.told_order import ToldOrder
-from sgcad_core.planner.later_courses import RunOuts, run_outs, with_run
+from sgcad_core.planner.later.later_courses import RunOuts, run_outs, with_run
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold, RestTold

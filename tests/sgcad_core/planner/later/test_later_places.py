@@ -11,7 +11,7 @@ import pytest
 from sgcad_core.planner.actor_plan import Role
 from sgcad_core.planner.aftermath.struck_objects import standing_track
 from sgcad_core.planner.encounter.meeting_place import Place
-from sgcad_core.planner.later_places import ToBeStruck, is_astray, is_slowed, lane_line, not_as_told, not_waiting
+from sgcad_core.planner.later.later_places import ToBeStruck, is_astray, is_slowed, lane_line, not_as_told, not_waiting
 from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.records.course import CourseTold

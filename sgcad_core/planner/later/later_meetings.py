@@ -23,8 +23,8 @@ from sgcad_core.planner.encounter.meeting_place import place_near
 from sgcad_core.planner.encounter.motion_options import Option, forced, options
 from sgcad_core.planner.encounter.pacing_choices import pacings
 from sgcad_core.planner.encounter.pairing import Encounter
-from sgcad_core.planner.later_courses import runs_aside, runs_into, runs_to_line, with_run
-from sgcad_core.planner.later_places import ToBeStruck, lane_line, not_as_told
+from sgcad_core.planner.later.later_courses import runs_aside, runs_into, runs_to_line, with_run
+from sgcad_core.planner.later.later_places import ToBeStruck, lane_line, not_as_told
 from sgcad_core.planner.motion import STEP_S, Motion
 from sgcad_core.planner.scene import Scene, Track
 from sgcad_core.records.specs import Area, Contact

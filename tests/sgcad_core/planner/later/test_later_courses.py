@@ -6,7 +6,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.aftermath.struck_objects import standing_track
-from sgcad_core.planner.later_courses import run_outs, runs_into, runs_on, runs_to_line, with_run
+from sgcad_core.planner.later.later_courses import run_outs, runs_into, runs_on, runs_to_line, with_run
 from sgcad_core.planner.scene import Scene
 from sgcad_core.records.specs import Actor
 from sgcad_core.roads.surface import road_surface
