@@ -77,6 +77,10 @@ def judged(made: ExecutedCase, who: str, name: str, fact: Fact) -> Comparison | 
         return None
     if course and name == "departs" and _comes_back(course.moves):
         return None
+    if name == "yaws":
+        own = [Move("yaws", fact.value)]  # type: ignore[arg-type]
+        turned = moves_made(made.graph, VehicleMotion(made.crash, who), own, made.sizes[who][0])
+        return Comparison(turned[0], None, "it does not turn so before its first contact")
     if name in _JUDGES:
         return _JUDGES[name](made, who, fact.value)
     if name not in _LABELS:
@@ -96,10 +100,6 @@ def _marks(made: ExecutedCase, who: str, label: VehicleLabel) -> Mapping[str, fl
 
 
 # ------------------------------------------------------------------ as labels of the scorers
-def _evasion(*deeds: str) -> VehicleLabel:
-    return VehicleLabel(evasion=deeds)
-
-
 def _deeds(evasion: str) -> tuple[str, ...]:
     """The deeds of an evasive maneuver, as labels name them."""
     side = steering_of(evasion)  # type: ignore[arg-type]
@@ -110,10 +110,10 @@ def _deeds(evasion: str) -> tuple[str, ...]:
 _LABELS: dict[str, Callable[[Value], VehicleLabel]] = {
     "maneuver": lambda value: VehicleLabel(maneuver=value),  # type: ignore[arg-type]
     "speed_mph": lambda value: VehicleLabel(speed_mph=float(value)),  # type: ignore[arg-type]
-    "evasion.brakes": lambda _: _evasion("brake"),
-    "evasion.steers": lambda value: _evasion("steer" if value == "either" else f"steer_{value}"),
-    "evasion.none": lambda _: _evasion(),
-    "evasion": lambda value: _evasion(*_deeds(str(value))),
+    "evasion.brakes": lambda _: VehicleLabel(evasion=("brake",)),
+    "evasion.steers": lambda value: VehicleLabel(evasion=("steer" if value == "either" else f"steer_{value}",)),
+    "evasion.none": lambda _: VehicleLabel(evasion=()),
+    "evasion": lambda value: VehicleLabel(evasion=_deeds(str(value))),
     "lost_control": lambda _: VehicleLabel(lost_control=True),
     "spin": lambda value: VehicleLabel(rest=RestLabel(turned="cw" if value == "clockwise" else "ccw")),
     "rest.facing_deg": lambda value: VehicleLabel(rest=RestLabel(facing=_point(float(value)))),  # type: ignore[arg-type]

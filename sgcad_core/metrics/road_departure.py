@@ -112,5 +112,7 @@ def _fits(move: Move, one: VehicleMotion, hand: Hand) -> bool:
 def _slip(one: VehicleMotion) -> Floats:
     """(n,) angle of the box against its way, left positive; 0 where it stands."""
     step = np.gradient(one.before[:, :2], axis=0)
-    angle: Floats = wrap_angle(one.before[:, 2] - np.arctan2(step[:, 1], step[:, 0]))
-    return np.where(np.hypot(*step.T) > _MOVES_M, angle, 0.0)
+    moving = np.hypot(*step.T) > _MOVES_M
+    angle = wrap_angle(one.before[:, 2] - np.arctan2(step[:, 1], step[:, 0]))
+    slip: Floats = np.unwrap(np.where(moving, angle, 0.0))  # more than half a turn is on the side on which it began
+    return np.where(moving, slip, 0.0)
