@@ -16,6 +16,8 @@ _IN_A_ROW_RAD, _PARKED_ACROSS = math.radians(20.0), 0.5
 """Angle to the curb from which on a parked vehicle is out of its row, and the cost of that."""
 _AGAINST = 0.8
 """Cost of a skid that turns the vehicle otherwise than told."""
+_STEERED = 0.5
+"""Cost of steering where it is told to turn out of control."""
 _LEAST_BACK_RAD = math.radians(90.0)
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
@@ -36,16 +38,33 @@ def _turned(role: Role, angle_rad: float, cost: float) -> list[Twist]:
     if is_standing(role):
         across = role.actor.maneuver == "parked" and abs(angle_rad) > _IN_A_ROW_RAD
         return [Twist(cost + _PARKED_ACROSS * across, angle_rad, ASKEW)]
-    found = [Twist(cost, angle_rad, STEERS)]
+    lost = _turns_out_of_control(role)
+    driven = cost + _STEERED * lost
+    found = [Twist(driven, angle_rad, STEERS)]
     if abs(role.place.aside_m) < 16:
-        found.append(Twist(cost + 0.05, angle_rad, STEERS, through=True))
+        found.append(Twist(driven + 0.05, angle_rad, STEERS, through=True))
         reach = 1 - math.cos(angle_rad)
         if abs(role.place.aside_m) > 1.0 and role.place.aside_m * angle_rad > 0 and reach > 0.02:
             radius = max(abs(role.place.aside_m) / reach, 1.2 / tightest(role.size[0]))
-            found.append(Twist(cost + 0.02, angle_rad, STEERS, radius_m=radius))
+            found.append(Twist(driven + 0.02, angle_rad, STEERS, radius_m=radius))
     if role.may_skid:
-        found.append(Twist(cost + 0.1 + _AGAINST * (_sense(role) * angle_rad < 0.0), angle_rad, SKIDS, skids=True))
+        slid = 0.0 if lost else 0.1
+        found.append(Twist(cost + slid + _AGAINST * (_sense(role) * angle_rad < 0.0), angle_rad, SKIDS, skids=True))
     return found
+
+
+def _turns_out_of_control(role: Role) -> bool:
+    """Whether it is told which way it turns before the contact, out of control."""
+    return role.may_skid and role.told.yaws is not None
+
+
+def _straight(role: Role) -> list[Twist]:
+    """Straight on; of one that is told to turn out of control, first small angles of a skid in that sense."""
+    if not _turns_out_of_control(role):
+        return [Twist(0.0)]
+    slips = ((22.0, 0.0), (35.0, 0.1), (14.0, 0.1))
+    turned = [Twist(cost, math.radians(_sense(role) * deg), SKIDS, skids=True) for deg, cost in slips]
+    return [*turned, Twist(_AGAINST)]
 
 
 def _sense(role: Role) -> float:
@@ -71,13 +90,13 @@ def _unlike(role: Role, angle_rad: float) -> float:
 def skids(role: Role) -> list[Twist]:
     """Straight on, slight steering, and the angles that bring the wanted side about."""
     small = [t for a in (12, -12, 26, -26) for t in _turned(role, math.radians(a), abs(a) / 60)]
-    return [Twist(0.0), *small, *aiming(role)]
+    return [*_straight(role), *small, *aiming(role)]
 
 
 def spins(role: Role) -> list[Twist]:
     """Any angle, in steps of 45 degrees, and small ones."""
     angles = [math.radians(a) for a in (24, -24, 45, -45, 90, -90, 135, -135, 180)]
-    return [Twist(0.0), *(t for a in angles for t in _turned(role, a, abs(a) + _unlike(role, a)))]
+    return [*_straight(role), *(t for a in angles for t in _turned(role, a, abs(a) + _unlike(role, a)))]
 
 
 def slides(role: Role) -> list[Twist]:

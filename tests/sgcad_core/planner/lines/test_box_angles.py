@@ -44,3 +44,15 @@ def test_a_skid_the_other_way_costs_more() -> None:
         for yaws in ("counterclockwise", "clockwise", None)
     }
     assert cost["counterclockwise"] == cost[None] < cost["clockwise"]
+
+
+def test_one_that_is_told_to_turn_out_of_control_first_slips_a_little_that_way() -> None:
+    first = box_angles._straight(role("clockwise"))[0]  # type: ignore[arg-type]
+    assert first.skids
+    assert -math.radians(45) < first.angle_rad < 0.0
+    assert [t.angle_rad for t in box_angles._straight(role(None))] == [0.0]  # type: ignore[arg-type]
+    steered = [
+        next(t.cost for t in box_angles._turned(role(yaws), 1.0, 0.0) if not t.skids)  # type: ignore[arg-type]
+        for yaws in ("counterclockwise", None)
+    ]
+    assert steered[0] > steered[1]
