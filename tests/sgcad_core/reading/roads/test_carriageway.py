@@ -29,7 +29,6 @@ def _lanes(text: str) -> set[tuple[int, int]]:
         ("V1 was traveling east on a four-lane, two-way highway.", 2),
         ("V1 was traveling southeast on an east/west road, divided by a barrier, in lane 1 (of four lanes).", 4),
         ("V1 was traveling east in lane two of a six-lane roadway divided by a grass median.", 6),
-        ("V1 was traveling east in lane two of a seven-lane roadway divided by a raised median.", 4),
         ("V1 was traveling east in lane six of a seven-lane roadway divided by a raised median.", 7),
         ("V1 was traveling east in lane one of a two-way, four-lane roadway divided by a grass median.", 2),
         ("V1 was traveling east in lane one of a four-lane, non-physically divided roadway.", 2),
@@ -47,3 +46,8 @@ def test_a_lane_beyond_the_half_of_an_undivided_road_makes_one_direction_wider()
     assert _lanes(told) == {(3, 1), (1, 3)}
     both = f"{told} V3 was traveling west in lane two of the same roadway."
     assert {sum(one) for one in _lanes(both)} != {4}  # no room for both
+
+
+def test_seven_lanes_of_a_divided_road_are_those_of_both_halves() -> None:
+    told = "V1 was traveling east in lane two of a seven-lane roadway divided by a raised median."
+    assert _lanes(told) == {(3, 4), (4, 3)}
