@@ -12,13 +12,22 @@ from typing import Literal
 from plugins.validator._told import as_question, quoted
 from sgcad_core.case.records import Finding, Hold
 from sgcad_core.findings import FindingFactory
+from sgcad_core.kinds import UNNUMBERED
 from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.reading.reading import Reading
 from sgcad_core.records.specs import Area, BehaviorSpec, Contact
 
 _finding = FindingFactory("behavior_narrative", where="contacts[0]")
-_KINDS = {"V": "vehicle", "T": "vehicle", "P": "person", "B": "person", "A": "animal", "O": "thing"}
+_KINDS = {
+    "V": "vehicle",
+    UNNUMBERED: "vehicle",
+    "T": "vehicle",
+    "P": "person",
+    "B": "person",
+    "A": "animal",
+    "O": "thing",
+}
 """By the letter of an id."""
 
 

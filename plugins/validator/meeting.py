@@ -16,6 +16,7 @@ from sgcad_core.case.records import Evidence, Finding, Hold, RoadNetwork, Scenar
 from sgcad_core.errors import InvalidOutput
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
+from sgcad_core.kinds import is_vehicle_id
 from sgcad_core.planner import plan
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.layout.road_ways import Way, ways_of
@@ -40,7 +41,7 @@ class Meeting(Validator):
         """At most one finding; none if control was lost or the contact is not between two vehicles."""
         if not isinstance(artifact, Scenario) or artifact.behavior is None or artifact.declared is None:
             return []
-        if not artifact.declared.striker.startswith("V") or not artifact.declared.struck.startswith("V"):
+        if not is_vehicle_id(artifact.declared.striker) or not is_vehicle_id(artifact.declared.struck):
             return []
         network, reading = evidence.network, evidence.report.reading
         if network is None or network.net_xml is None:

@@ -77,7 +77,7 @@ def judged(made: ExecutedCase, who: str, name: str, fact: Fact) -> Comparison | 
         return None
     if course and name == "departs" and _comes_back(course.moves):
         return None
-    if name == "yaws":
+    if name == "yaws" and not (course and course.moves):
         own = [Move("yaws", fact.value)]  # type: ignore[arg-type]
         turned = moves_made(made.graph, VehicleMotion(made.crash, who), own, made.sizes[who][0])
         return Comparison(turned[0], None, "it does not turn so before its first contact")

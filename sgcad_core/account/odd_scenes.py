@@ -115,20 +115,17 @@ def _lying(made: ExecutedCase) -> Iterator[Item]:
 
 
 def _one_lane(made: ExecutedCase) -> Iterator[Item]:
-    """Two of one direction that are told to be in lanes of different numbers start in different lanes."""
+    """Two of one direction that are told to be in lanes of different numbers start in different lanes, where one of the
+    two changes lanes. Numbers from the right and from the left are not compared."""
     told = [v for v in made.reading.crash.vehicles if v.lane is not None and v.id in made.tracks]
     for a, b in combinations(told, 2):
-        if a.heading != b.heading or a.lane == b.lane or not (is_changing(a.maneuver) or is_changing(b.maneuver)):
+        changes = any(CHANGES.get(v.maneuver, 0) for v in (a, b))
+        if a.heading != b.heading or a.lane == b.lane or (a.lane or 0) * (b.lane or 0) < 0 or not changes:
             continue
         lanes = [_first_lane(made, v.id) for v in (a, b)]
         if lanes[0] is not None and lanes[0] == lanes[1]:
             yield _item(f"vehicles.{b.id}.lane", b.id, f"{a.id} and {b.id} in lanes {a.lane} and {b.lane}",
                         "both start in one lane")  # fmt: skip
-
-
-def is_changing(maneuver: str) -> bool:
-    """Whether a maneuver leads into another lane."""
-    return bool(CHANGES.get(maneuver, 0))  # type: ignore[call-overload]
 
 
 def _first_lane(made: ExecutedCase, who: str) -> tuple[str, int] | None:

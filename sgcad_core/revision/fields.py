@@ -142,7 +142,6 @@ def _annotation(model: type[BaseModel], name: str) -> Any:
 _ACTS_MEAN = {
     "from_rest": "whether it stood, then moved on into its first contact", "signal": "what the signal showed to it",
     "evasion": "what it did to avoid its first contact", "lost_control": "whether it lost control",
-    "yaws": "how it turned out of control before its first contact",
     "departs": "side by which it left the road before its first contact", "spin": "how it turned after the contact",
     "spin_deg": "by how many degrees it turned", "rolls": "whether it rolled over",
     "roll_quarters": "quarter turns of the rollover", "rolls_to": "the side that led as it rolled over",

@@ -73,10 +73,15 @@ def drive_away(
         stops = name in brushed and its.slight and its.rest.empty and not its.leaves
         if not (its.leaves or stops) or name not in courses or track.hit is None:
             continue
+        if any(name in coupled[:2] for coupled in scene.hitches):
+            if its.leaves:
+                yield f"{name} stays at the scene, which it leaves as told: it tows a trailer"
+            continue
         way = next(_ways(scene, track, _as_faced(track, courses[name]), stops=stops), None)
         if way is None and not stops:
             yield f"{name} stays at the scene, which it leaves as told: no way leads past the others"
         elif way is not None:
+            way[:, 2] = np.unwrap(way[:, 2])  # one that has spun, or that faces about, goes on from its own angle
             track.poses = way
 
 

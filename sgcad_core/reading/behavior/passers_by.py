@@ -80,12 +80,14 @@ def with_parked_rows(behavior: BehaviorSpec, reading: Reading, spec: RoadSpec) -
     told = next((m for s in reading.sentences if (m := rule("company.parked_rows").search(s.text))), None)
     if own is None or told is None or behavior.first_meeting is None:
         return behavior
+    if any(actor.maneuver == "parked" for actor in behavior.actors):
+        return behavior  # these are the ones that are told
     met = [w for w in ways if w.to_node == own.to_node and apart(w.end_rad, own.end_rad + math.pi) < _ASIDE_RAD]
     against = next((w for w in (*met, *ways) if w in met or (w.road.id == own.road.id and w != own)), None)
     sides = {"left": (against,), "right": (own,)}.get((told["hand"] or "").lower(), (own, against))
     actors, taken = list(behavior.actors), taken_names(behavior.actors, reading)
     for way in (way for way in sides for _ in range(_IN_A_ROW) if way and len(actors) < MOST):
-        taken.add(name := free_name(taken, "V"))
+        taken.add(name := free_name(taken, letter_of_vehicles(reading)))
         parked = Actor(id=name, kind="car", road=way.road.id, direction=way.direction, lane=1, maneuver="parked")
         actors.append(parked)
     return behavior.model_copy(update={"actors": tuple(actors)})
