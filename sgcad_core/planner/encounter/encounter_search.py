@@ -101,10 +101,13 @@ def along_sides(
         return []
     judged, good = found
     cost = _cost(first, second, judged.touches.first, judged.touches.second, judged.margins)
-    there = good & (off_part((first, second), judged.touches, parts) < PART_COST / 2)
-    able = np.flatnonzero(there if there.any() else good)
+    able = good
+    if any(parts):
+        there = good & (off_part((first, second), judged.touches, parts) < PART_COST / 2)
+        able = there if there.any() else good
+    places = np.flatnonzero(able)
     shares = (np.arange(count) + 0.5) / count
-    chosen = dict.fromkeys(int(able[int(share * len(able))]) for share in shares)
+    chosen = dict.fromkeys(int(places[int(share * len(places))]) for share in shares)
     return [_meeting(first, second, judged, number, cost) for number in chosen]
 
 

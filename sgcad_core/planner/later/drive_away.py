@@ -144,13 +144,10 @@ def _start(poses: Floats, mps: float, sample: int, course: Course) -> _Start:
 def _lines(track: Track, course: Course, start: _Start) -> Iterator[float]:
     """Distances to the left of the lane at which it may drive on: as it is, in its lane, in the lanes beside it."""
     room_m = course.lane_width_m + track.size[1] / 2
+    edges_m = {1: course.left_edge_m, -1: course.right_edge_m}
+    sides = (1, -1) if course.own_left_m > room_m else (-1, 1)  # the other direction's lane is the last choice
     yield from (0.0, start.left_m)
-    if course.own_left_m > room_m and course.left_edge_m > room_m:
-        yield course.lane_width_m
-    if course.right_edge_m > room_m:
-        yield -course.lane_width_m
-    if course.left_edge_m > room_m:
-        yield course.lane_width_m
+    yield from (side * course.lane_width_m for side in sides if edges_m[side] > room_m)
 
 
 def _past(scene: Scene, track: Track, course: Course, start: _Start) -> float:

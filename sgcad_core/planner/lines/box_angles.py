@@ -19,6 +19,7 @@ _AGAINST = 0.8
 _STEERED = 0.5
 """Cost of steering where it is told to turn out of control."""
 _LEAST_BACK_RAD = math.radians(90.0)
+"""Angle of the box from which on a told sense may take it the longer way round."""
 _SLIDING = 2.0
 """Cost of a slide: more than any steering."""
 
