@@ -95,8 +95,9 @@ class CaseRun:
         both = self._both(report)
         if both is None and any(fact.basis == "model" for fact in report.value.reading.facts):
             note = "the second opinion led to no scenario: the rules' reading stands"
-            alone = {"opinion": None, "notes": (*report.value.notes, note)}
-            self.report, self.read_by = report.value.model_copy(update=alone), "rules"
+            alone = readings.read_by(report.value, "rules")
+            self.report = alone.model_copy(update={"notes": (*report.value.notes, note)})
+            self.read_by = "rules"
             return self._both(Held(self.report))
         return both
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal
 
-from sgcad_core.account import Account
+from sgcad_core.account import Account, is_unsure
 from sgcad_core.case.records import CrashReport
 
 ReadBy = Literal["all", "learned", "rules"]
@@ -36,8 +36,10 @@ def read_by(report: CrashReport, readers: ReadBy) -> CrashReport:
     opinion = report.opinion
     if opinion is None or readers == "all":
         return report
-    learned = opinion.model_copy(update={"answered": None}) if readers == "learned" and opinion.guesses else None
-    return report.model_copy(update={"opinion": learned})
+    if not opinion.guesses:
+        return report.model_copy(update={"opinion": None})
+    fewer = {"answered": None} if readers == "learned" else {"taken": False}
+    return report.model_copy(update={"opinion": opinion.model_copy(update=fewer)})
 
 
 def other_readings(report: CrashReport) -> Iterator[tuple[ReadBy, CrashReport]]:
@@ -53,10 +55,12 @@ def other_readings(report: CrashReport) -> Iterator[tuple[ReadBy, CrashReport]]:
 
 
 def missed(account: Account) -> float:
-    """The number of things that keep a scenario from being right as far as told; infinite where there is none."""
+    """The number of things that keep a scenario from being right as far as told; infinite where there is none. Values
+    that were read and are unsure do not count: another reading is no remedy for words that mean two things."""
     if account.verdict == "none":
         return float("inf")
-    return float(sum(item.kind in ("lacks", "contradicts", "guessed") for item in account.items))
+    some = (item for item in account.items if not is_unsure(item))
+    return float(sum(item.kind in ("lacks", "contradicts", "guessed") for item in some))
 
 
 def note_of(readers: ReadBy, kept: Account, before: Account) -> str:

@@ -16,6 +16,7 @@ from sgcad_core.account.second_opinion import weighed
 from sgcad_core.account.told_places import told_place_items
 from sgcad_core.account.unread_clauses import unread_clauses
 from sgcad_core.account.unread_text import unread_items
+from sgcad_core.account.unsure import unsure_items
 from sgcad_core.account.verdict import (
     ORDER,
     contradictions,
@@ -49,7 +50,7 @@ def account_of(
     told, differing = weighed(made, [*_told(made), *_limits(notes)], asked, models)
     told += [*odd_driving(made, notes), *untold_swerves(made, notes), *places(made), *unread_clauses(made)]
     told += odd_scenes(made)
-    told += [*contradictions(made), *guesses(made)]
+    told += [*contradictions(made), *guesses(made), *unsure_items(made)]
     ranked = sorted(told, key=lambda item: ORDER.index(item.kind))
     items = (*ranked, *assumed_items(made, facts))
     verdict = verdict_of(items, differing)

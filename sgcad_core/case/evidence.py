@@ -6,6 +6,7 @@ Knows no network and no scenario. The narrative is read at most once a case: `Cr
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
@@ -73,16 +74,19 @@ class CrashReport(NarrativeRecord):
         from sgcad_core.reading.second_reader.fuse_gist import fused_with_gist
         from sgcad_core.reading.second_reader.fuse_numbered import fused_with_guesses
         from sgcad_core.reading.second_reader.fuse_whole import fused_with_answer
+        from sgcad_core.reading.second_reader.unsure_answers import unsure_answers
         from sgcad_core.reading.text.traced_text import placed
 
-        found = read(placed(self.narrative, self.places))
-        if self.opinion:
+        found = rules = read(placed(self.narrative, self.places))
+        if self.opinion and self.opinion.taken:
             found = fused_with_guesses(found, self.opinion.guesses)
             found = (
                 fused_with_answer(found, self.opinion)
                 if self.opinion.answered
                 else fused_with_gist(found, self.opinion)
             )
+        if self.opinion:
+            found = replace(found, unsure=unsure_answers(rules, found, self.opinion.guesses))
         return with_edits(found, self.edits)
 
 

@@ -63,6 +63,7 @@ from sgcad_core.reading.text.report_styles import account, tells_study
 from sgcad_core.reading.text.traced_text import TracedText
 from sgcad_core.records.edits import Edit
 from sgcad_core.records.facts import Fact
+from sgcad_core.records.second_reader import Unsure
 from sgcad_core.records.timeline import Act
 from sgcad_core.records.words import SignalState
 
@@ -90,6 +91,8 @@ class Reading:
     """States and acts of all road users in the order of the crash; maneuvers and starts from a stop follow from it."""
     called: Mapping[str, str] = field(default_factory=dict)
     """Of a text without vehicle numbers: number in a sentence -> id of that person, cyclist or animal."""
+    unsure: tuple[Unsure, ...] = ()
+    """Answers that the learned reader of numbered reports holds to be wrong too often."""
 
     def actor(self, name: str) -> str:
         """The id of the actor that a sentence names so."""

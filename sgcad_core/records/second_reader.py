@@ -81,6 +81,14 @@ class Guess(Record):
     sentence: int | None = None
 
 
+class Unsure(Record):
+    """An answer of the final reading that the learned reader of numbered reports holds to be right less often than
+    `sgcad_core.reading.second_reader.unsure_answers.LEAST_SURE`; `question`: as that reader asks it ("lanes.V1")."""
+
+    question: str
+    p: float = Field(ge=0, le=1)
+
+
 class Opinion(Record):
     """The second reader's values and their weights against the rules. Fields without weights are the rules'."""
 
@@ -93,3 +101,5 @@ class Opinion(Record):
     """What the learned reader says of a numbered report, by the fields of its questions."""
     takes: float = Field(0.5, ge=0, le=1)
     """Probability from which on another value than the rules' is taken."""
+    taken: bool = True
+    """False: none of its values is taken; its guesses still say how sure the rules' own are."""

@@ -1,6 +1,6 @@
 """What is asked of a numbered report, vehicle by vehicle, with the words around it and what the rules say.
 
-    maneuver.V1     what it does up to its contact (a key of `MANEUVERS`)
+    maneuver.V1     what it does up to its contact (a key of `numbered_answers.MANEUVERS`)
     area.V1         its side in the crash's first contact
     met.V1          what its first contact is with: vehicle, person, animal, thing, none
     junction        "yes" where roads meet
@@ -17,24 +17,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from sgcad_core.kinds import actor_kind
 from sgcad_core.reading.contacts.contact_records import ContactFacts
-from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
+from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.second_reader.learned_reader_features import Account
+from sgcad_core.reading.second_reader.numbered_answers import answer_of, first_contact, lanes_of, relative, side_of
 from sgcad_core.reading.second_reader.numbered_words import FEW, Voice, first_way, grams, pairs, said_of, tokens
-from sgcad_core.reading.text.compass import COMPASS, between, turned
+from sgcad_core.reading.text.compass import COMPASS
 from sgcad_core.records.facts import Fact, Status
-from sgcad_core.records.specs import Compass, RoadLayout
 
-_LEFT, _RIGHT = "lane_change_left", "lane_change_right"
-MANEUVERS: Mapping[str, str] = {
-    "straight": "straight", "slowing": "straight", "negotiating_curve": "straight", "other": "straight",
-    "departing_road_left": "straight", "departing_road_right": "straight", "stopped": "stopped", "parked": "stopped",
-    "turn_left": "turn_left", "turn_right": "turn_right", "u_turn": "u_turn", "backing": "backing", _LEFT: _LEFT,
-    "crossing_centerline": _LEFT, "overtaking": _LEFT, _RIGHT: _RIGHT, "merge": f"{_LEFT}+{_RIGHT}",
-}  # fmt: skip
-"""Maneuver -> the one that stands for it among the answers; "+": either."""
 TOLD: Mapping[Status | None, float] = {"stated": 1.0, "inferred": 0.5, "default": 0.0, None: 0.0}
 """How much the text tells of a value of the rules."""
 _ABOUT, _LAST = 14, 10
@@ -60,11 +51,6 @@ def questions(account: Account) -> tuple[Question, ...]:
     return tuple(_Asker(account).all()) if not account.reading.crash.unnumbered else ()
 
 
-def same(answer: str, own: str | None) -> bool:
-    """Whether an answer is the rules' own."""
-    return own is not None and answer in own.split("+")
-
-
 # ------------------------------------------------------------------ questions
 class _Asker:
     """A report's questions."""
@@ -81,33 +67,29 @@ class _Asker:
         first = first_contact(self.crash)
         for v in self.crash.vehicles:
             by_sentence, read = self._vehicle_words(v), frozenset(self._readings(v, first))
-            yield self._asked(
-                f"maneuver.{v.id}", by_sentence, read, MANEUVERS[v.maneuver], self._told(f"vehicles.{v.id}.maneuver")
-            )
-            if first is not None and v.id in (first.striker, first.struck):
-                role = "striker" if v.id == first.striker else "struck"
-                side = first.striker_area if v.id == first.striker else first.struck_area
-                yield self._asked(f"area.{v.id}", by_sentence, read, side, self._told(f"contacts.0.{role}_area"))
-            yield self._asked(f"met.{v.id}", by_sentence, read, met(self.crash, v.id), 1.0)
-            if (lanes := lanes_of(v, self.layout)) is not None:
-                asked = self._asked(f"lanes.{v.id}", self._lane_words(v), read, lanes, self._lanes_told(v))
+            yield self._asked(f"maneuver.{v.id}", by_sentence, read, self._told(f"vehicles.{v.id}.maneuver"))
+            if side_of(self.crash, v.id) is not None:
+                role = "striker" if first and v.id == first.striker else "struck"
+                yield self._asked(f"area.{v.id}", by_sentence, read, self._told(f"contacts.0.{role}_area"))
+            yield self._asked(f"met.{v.id}", by_sentence, read, 1.0)
+            if lanes_of(v, self.layout) is not None:
+                asked = self._asked(f"lanes.{v.id}", self._lane_words(v), read, self._lanes_told(v))
                 yield asked._replace(may=self._counts(v))
         yield from self._whole()
 
     def _whole(self) -> Iterator[Question]:
         everybody = dict.fromkeys((v.id for v in self.crash.vehicles), "VEH")
         said = self._words(Voice(everybody, first_way(self.said)), 3)
-        meets = "yes" if len(self.layout.legs) > 2 or self.layout.accesses else "no"
-        yield self._asked("junction", said, self.common, meets, self._told("junction.kind"))
-        one, two = (self.crash.vehicle(name) for name in ("V1", "V2"))
-        if one and two:
+        yield self._asked("junction", said, self.common, self._told("junction.kind"))
+        if self.crash.vehicle("V1") and self.crash.vehicle("V2"):
             said = self._words(Voice({"V1": "ONE", "V2": "TWO"}, first_way(s for s in self.said if s.about("V1"))), 3)
             told = min(self._told(f"vehicles.{v}.heading") for v in ("V1", "V2"))
-            yield self._asked("turned.V2", said, self.common, relative(one, two), told)
+            yield self._asked("turned.V2", said, self.common, told)
 
     def _asked(
-        self, field: str, by_sentence: Mapping[int, frozenset[str]], read: frozenset[str], own: str | None, told: float
+        self, field: str, by_sentence: Mapping[int, frozenset[str]], read: frozenset[str], told: float
     ) -> Question:
+        own = answer_of(field, self.crash, self.layout)
         words = frozenset().union(*by_sentence.values())
         return Question(field, words, read | {f"own={own}", f"own={own}&{told}"}, own, told, by_sentence)
 
@@ -247,46 +229,6 @@ class _Asker:
         return float(
             road is not None and bool(road.lanes.total or road.lanes.each_way or road.lanes.toward or road.lanes.own)
         )
-
-
-# ------------------------------------------------------------------ the rules' answers
-def first_contact(crash: CrashFacts) -> ContactFacts | None:
-    """The crash's first contact, if the rules can read one."""
-    return crash.contacts[0] if crash.contacts and not crash.gap else None
-
-
-def met(crash: CrashFacts, vehicle: str) -> str:
-    """What a vehicle's first contact is with."""
-    mine = crash.first_contact(vehicle) if not crash.gap else None
-    if mine is None:
-        return "thing" if any(i.actor == vehicle for i in crash.impacts) else "none"
-    other = mine.struck if mine.striker == vehicle else mine.striker
-    if other.startswith("V"):
-        return "vehicle"
-    kind = next((o.kind for o in crash.others if o.id == other), "object")
-    return "animal" if other.startswith("A") else "person" if actor_kind(kind).walks or other[0] in "PB" else "thing"
-
-
-def relative(one: VehicleFacts, two: VehicleFacts) -> str | None:
-    """How far clockwise the second body is turned against the first one, to 90 degrees."""
-    ways = [body_way(v) for v in (one, two)]
-    if ways[0] is None or ways[1] is None:
-        return None
-    return str(round(between(ways[0], ways[1]) / 90) % 4 * 90)
-
-
-def body_way(v: VehicleFacts) -> Compass | None:
-    """Where its front points: a vehicle that backs goes the other way."""
-    if v.heading is None:
-        return None
-    return turned(v.heading, 180) if v.maneuver == "backing" and not v.faces else v.heading
-
-
-def lanes_of(v: VehicleFacts, layout: RoadLayout) -> str | None:
-    """Lanes of the leg that a vehicle comes in on; None where it comes in on none."""
-    bearing = turned(v.heading, 180) if v.heading else None
-    leg = next((leg for leg in layout.legs if leg.bearing == bearing), None)
-    return f"own{leg.lanes_in}+both{leg.lanes_in + leg.lanes_out}" if leg else None
 
 
 def _place(number: int, hit: int | None) -> str:

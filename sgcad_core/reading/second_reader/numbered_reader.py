@@ -45,7 +45,8 @@ from sgcad_core.reading.second_reader.learned_reader import (
     probability,
 )
 from sgcad_core.reading.second_reader.learned_reader_features import account_of
-from sgcad_core.reading.second_reader.numbered_questions import Question, questions, same
+from sgcad_core.reading.second_reader.numbered_answers import same
+from sgcad_core.reading.second_reader.numbered_questions import Question, questions
 from sgcad_core.records.second_reader import NUMBERED_WEIGHTS, Guess
 
 TAKES, TAKES_TOLD = 0.6, 0.7

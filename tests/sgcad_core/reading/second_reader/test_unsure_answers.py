@@ -1,0 +1,45 @@
+"""Which answers of a final reading the learned reader of numbered reports does not trust."""
+
+from __future__ import annotations
+
+import pytest
+
+from sgcad_core.reading.reading import read
+from sgcad_core.reading.second_reader.fuse_numbered import fused_with_guesses
+from sgcad_core.reading.second_reader.unsure_answers import LEAST_SURE, unsure_answers
+from sgcad_core.records.second_reader import Guess, Unsure
+
+TEXT = (
+    "V1 was traveling east on a four lane road in lane one. V2 was traveling east on the same road in lane two. "
+    "The front of V2 struck the left side of V1."
+)
+RULES = read(TEXT)
+
+
+def unsure(**guesses: Guess) -> tuple[Unsure, ...]:
+    """Of the reading in which the guesses are taken; "_" for the point of a question."""
+    asked = {name.replace("_", "."): guess for name, guess in guesses.items()}
+    return unsure_answers(RULES, fused_with_guesses(RULES, asked), asked)
+
+
+@pytest.mark.parametrize(("p", "found"), [(LEAST_SURE - 0.01, True), (LEAST_SURE, False), (0.99, False)])
+def test_an_answer_of_the_rules_that_is_right_too_seldom_is_unsure(p, found) -> None:
+    assert bool(unsure(lanes_V1=Guess(p=p))) == found
+
+
+def test_the_readers_own_answer_is_as_sure_as_it_says() -> None:
+    taken = unsure(maneuver_V1=Guess(value="lane_change_left", p=0.62))
+    assert taken == (Unsure(question="maneuver.V1", p=0.62),)
+    assert unsure(maneuver_V1=Guess(value="lane_change_left", p=0.8)) == ()
+
+
+def test_the_rules_answer_is_unsure_where_a_better_one_could_not_be_drawn() -> None:
+    alone = read("V1 was traveling east on a road. The front of V1 struck a pole.")
+    passes = {"maneuver.V1": Guess(value="overtaking", p=0.9)}
+    assert fused_with_guesses(alone, passes).crash == alone.crash
+    assert [one.p for one in unsure_answers(alone, alone, passes)] == [pytest.approx(0.1)]
+
+
+def test_what_a_model_made_of_an_answer_since_is_not_judged() -> None:
+    other = fused_with_guesses(RULES, {"maneuver.V1": Guess(value="turn_left", p=0.9)})
+    assert unsure_answers(RULES, other, {"maneuver.V1": Guess(p=0.1)}) == ()
