@@ -5,7 +5,7 @@ A track is (n, 3) poses 0.05 s apart from time 0. Knows motions and the wreck, n
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from typing import NamedTuple
@@ -240,7 +240,11 @@ class Scene:
 
     def trajectories(self, order: tuple[str, ...], told: Courses = NOTHING_TOLD) -> tuple[Trajectory, ...]:
         """All tracks as records, in the given order; `told`: stated courses, for rollovers."""
-        return tuple(_trajectory(self.everybody[name], told.get(name)) for name in order)
+        return tuple(_trajectory(self.everybody[name], told.get(name), self._samples_of(name)) for name in order)
+
+    def _samples_of(self, name: str) -> list[int]:
+        """The samples at which an actor comes to touch others, in order."""
+        return [round(touch.t_s / STEP_S) for touch in self.touches if name in (touch.first, touch.second)]
 
 
 def usual_drag(kind: ActorKind, grip_mps2: float, along_mps2: float = BRAKED_MPS2) -> Drag:
@@ -258,17 +262,18 @@ def sample_speeds(poses: Floats) -> Floats:
     return np.concatenate((step[:1], (step[1:] + step[:-1]) / 2, step[-1:]))
 
 
-def _trajectory(track: Track, told: CourseTold | None) -> Trajectory:
+def _trajectory(track: Track, told: CourseTold | None, touches: Sequence[int]) -> Trajectory:
     """Speeds follow from the positions, separately before and after an impact."""
     poses = track.poses
     speed = sample_speeds(poses)
     if track.hit is not None and 0 < track.hit < len(poses) - 1:
         speed[track.hit] = np.hypot(*(poses[track.hit, :2] - poses[track.hit - 1, :2])) / STEP_S
     t = np.round(np.arange(len(poses)) * STEP_S, 3)
+    over = told is not None and rolls_over(told) and track.hit is not None
     return Trajectory(
         actor=track.actor, t_s=t, x_m=poses[:, 0].copy(), y_m=poses[:, 1].copy(),
         heading_rad=poses[:, 2].copy(), speed_mps=speed,
-        roll_rad=roll_angles(poses, track.hit, told) if told and rolls_over(told) and track.hit is not None else None,
+        roll_rad=roll_angles(poses, track.hit, told, touches) if over else None,  # type: ignore[arg-type]
     )  # fmt: skip
 
 

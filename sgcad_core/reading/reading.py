@@ -42,6 +42,7 @@ from sgcad_core.reading.inference.gaps import (
 )
 from sgcad_core.reading.inference.infer_facts import infer_crash
 from sgcad_core.reading.inference.inference_state import CrashTold
+from sgcad_core.reading.inference.roll_order import with_roll_order
 from sgcad_core.reading.inference.untold_moves import with_untold_moves
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Segment, Statement, resolve_sentences, segments
@@ -228,6 +229,7 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     crash = replace(roads.crash, gap=_gap(narrative, found, named, roads.crash))
     lost = bool(rule("meeting.lost").search(narrative))
     acts = tuple(renamed(act, called) for act in acts)
+    crash = with_roll_order(crash, acts, narrative)
     return Reading(narrative, found, crash, replace(roads, crash=crash), states, lost, facts, (), acts, called)
 
 

@@ -116,6 +116,8 @@ class CourseTold:
     """Quarter turns of its rollover."""
     rolls_to: Hand | None = None
     """The side that leads when it rolls over."""
+    rolls_after: int = 1
+    """Contacts of its own that are told before it rolls over."""
     rest: RestTold = RestTold()
 
     @property

@@ -54,6 +54,8 @@ class RunOut(NamedTuple):
     """Whether bent or locked wheels slide: friction acts against the motion of every tire, and none steers."""
     yaws_radps2: float = 0.0
     """Moment of wheels that drag on one side of a body that slides, as an angular acceleration, left positive."""
+    yaws_s: float = math.inf
+    """Time from `from_s` on for which they drag."""
 
     def along_at(self, now_s: float) -> float:
         """Deceleration along the box at a time, m/s2."""
@@ -78,7 +80,7 @@ def apply_friction(
     if vx == vy == spin == 0.0:
         return
     if run and run.slides:
-        _slide(one, drag, run, step, left_s)
+        _slide(one, drag, run, step, left_s, now_s)
         return
     speed = math.hypot(vx, vy)
     target = 0.0
@@ -107,7 +109,7 @@ def apply_friction(
     one.spin = target if abs(off) <= turning else spin - math.copysign(turning, off)
 
 
-def _slide(one: Body, drag: Drag, run: RunOut, step: float, left_s: float) -> None:
+def _slide(one: Body, drag: Drag, run: RunOut, step: float, left_s: float, now_s: float) -> None:
     """Coulomb friction under a body that slides and turns: what turns fast is slowed less along its way, and the
     reverse (R. M. Brach, Vehicle Accident Analysis and Reconstruction Methods, ch. 5)."""
     speed, turns = math.hypot(one.vx, one.vy), abs(one.spin) * _TURNS_M
@@ -118,7 +120,7 @@ def _slide(one: Body, drag: Drag, run: RunOut, step: float, left_s: float) -> No
     one.vx, one.vy = one.vx * left, one.vy * left
     turning = max(locked_turning(one, drag) * run.turning * turns / both, abs(one.spin) / left_s) * step
     one.spin = 0.0 if abs(one.spin) <= turning else one.spin - math.copysign(turning, one.spin)
-    if speed > _STEERS_MPS:
+    if speed > _STEERS_MPS and now_s < run.from_s + run.yaws_s:
         one.spin += run.yaws_radps2 * step
 
 
@@ -149,9 +151,10 @@ def run_out_paths(
     counts = [len(ways) for ways in runs]
     state = np.repeat([_moving(one.body) for one in released], counts, axis=0).T
     turns = [locked_turning(one.body, drag) for one, drag in zip(released, drags, strict=True)]
-    way, bend, share, rolls, slides, yaws = np.array([run[1:] for ways in runs for run in ways], dtype=float).T
+    way, bend, share, rolls, slides, yaws, drags_s = np.array([run[1:] for ways in runs for run in ways], dtype=float).T
     wheels = np.array([
         way, bend, np.repeat(turns, counts) * share, np.repeat([drag.across for drag in drags], counts), rolls, yaws,
+        drags_s,
     ])  # fmt: skip
     lasts_s = end_s - released[0].at_s
     found = np.empty((max(round(lasts_s / step), 1), len(way), 3))
@@ -193,9 +196,9 @@ def _moving(one: Body) -> tuple[float, ...]:
 
 
 def _run_on(state: Floats, wheels: Floats, clock: _Clock) -> Floats:
-    """(6, n) place, heading, velocity, spin a step later; `wheels`: (6, n) braking, bend, turning, grip, the time for
-    which it rolls on, and the moment of wheels that drag."""
-    (way, bend, turning, grip, rolls, _), step, left_s = wheels, clock.step, clock.left
+    """(6, n) place, heading, velocity, spin a step later; `wheels`: (7, n) braking, bend, turning, grip, the time for
+    which it rolls on, the moment of wheels that drag, and the time for which they do."""
+    (way, bend, turning, grip, rolls, *_), step, left_s = wheels, clock.step, clock.left
     way = np.where(clock.since < rolls, 0.0, way)
     moved = state[:3] + state[3:] * step
     vx, vy, spin = state[3:]
@@ -221,7 +224,7 @@ def _run_on(state: Floats, wheels: Floats, clock: _Clock) -> Floats:
 
 def _slide_on(state: Floats, wheels: Floats, clock: _Clock) -> Floats:
     """(6, n) as `_run_on`, of bodies that slide (`_slide`)."""
-    (way, _, turning, _, _, yaws), step, left_s = wheels, clock.step, clock.left
+    (way, _, turning, _, _, yaws, drags_s), step, left_s = wheels, clock.step, clock.left
     moved = state[:3] + state[3:] * step
     vx, vy, spin = state[3:]
     speed, turns = np.hypot(vx, vy), np.abs(spin) * _TURNS_M
@@ -231,5 +234,5 @@ def _slide_on(state: Floats, wheels: Floats, clock: _Clock) -> Floats:
     left = np.where(brake * step >= speed, 0.0, 1.0 - brake * step / np.maximum(speed, 1e-9))
     by = np.maximum(turning * turns / both, np.abs(spin) / left_s) * step
     turned = np.where(np.abs(spin) <= by, 0.0, spin - np.copysign(by, spin))
-    turned = turned + np.where(speed > _STEERS_MPS, yaws * step, 0.0)
+    turned = turned + np.where((speed > _STEERS_MPS) & (clock.since < drags_s), yaws * step, 0.0)
     return np.concatenate((moved, (vx * left, vy * left, turned)))

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from sgcad_core.geometry.plane import Floats, Size, gaps_where_near
 from sgcad_core.metrics.rest_error import whirls
 from sgcad_core.planner.aftermath.ground_friction import RunOut
+from sgcad_core.planner.aftermath.rollover import barrel_costs
 from sgcad_core.planner.aftermath.second_contact import MISSED, NOT_AGAIN, WRONG_SIDE, Sides, wrong_sides
 from sgcad_core.records.course import CourseTold
 from sgcad_core.roads.surface import RoadSurface
@@ -44,6 +45,9 @@ _DRAGS = (0.0, 0.25, -0.25, 0.55, -0.55, 1.0, -1.0, 1.8, -1.8)
 _DRAG_LEVER_PER_M = 0.2
 """That moment per m/s2 of braking: half of it acts at half of the track, over the squared radius of gyration of a
 car."""
+_TRIPS_RADPS2, _TRIPS_S = (2.5, -2.5, 4.5, -4.5), (0.4, 0.7)
+"""Moment of wheels that dig in before a vehicle rolls over, and the time for which they do: a furrow takes half of the
+weight 1.4 m before the center, over the squared radius of gyration of a car (1.4 m) some 4 rad/s2."""
 _DRIVES_ON_S, _DRIVES_ON_PER_M = (1.0, 1.8), 0.06
 """Time for which an able driver goes on before braking, with freely rolling wheels and in no tighter bend: to the
 shoulder, out of the junction."""
@@ -196,13 +200,18 @@ def all_runs(from_s: float, grip_mps2: float, mps: float, *, on_wheels: bool = T
     brakes = [max(share * grip_mps2, least) for share in shares]
     ways = [RunOut(from_s, mps2, bend, turning) for mps2, bend, turning in product(brakes, bends, _TURNING)]
     slides = [max(share * grip_mps2, least) for share in _SLIDES_SHARE if mps > _SLOW_MPS or share >= shares[0]]
-    on_wheels = on_wheels and mps > _SLOW_MPS
+    drives_on = on_wheels and mps > _SLOW_MPS
     gentle = [way for way in ways if abs(way.bend_per_m) <= _DRIVES_ON_PER_M and way.turning == _TURNING[0]]
     ways += [
         RunOut(from_s, mps2, 0.0, turning, slides=True, yaws_radps2=drags * _DRAG_LEVER_PER_M * mps2)
         for mps2, turning, drags in product(slides, _SLIDES_TURNING, _DRAGS)
     ]
-    return ways + [way._replace(rolls_s=rolls) for way in gentle for rolls in _DRIVES_ON_S if on_wheels]
+    if not on_wheels:
+        ways += [
+            RunOut(from_s, mps2, 0.0, turning, slides=True, yaws_radps2=yaws, yaws_s=lasts)
+            for mps2, turning, yaws, lasts in product(slides, _SLIDES_TURNING, _TRIPS_RADPS2, _TRIPS_S)
+        ]
+    return ways + [way._replace(rolls_s=rolls) for way in gentle for rolls in _DRIVES_ON_S if drives_on]
 
 
 def oddities(runs: Sequence[RunOut], grip: float, usual_share: float) -> Floats:
@@ -231,8 +240,8 @@ def loops(ways: Floats, step_s: float) -> Floats:
 
 def odd_ways(course: CourseTold, ways: Floats, surface: RoadSurface) -> Floats:
     """(n,) costs of (m, n, 3) ways that turn on the spot, or that leave the road of which the told rest is a part and
-    come back to it."""
-    cost = _ON_THE_SPOT * (whirls(ways) > _SPOT_RAD).astype(float)
+    come back to it, or on which it rolls over with its front ahead."""
+    cost = _ON_THE_SPOT * (whirls(ways) > _SPOT_RAD).astype(float) + barrel_costs(course, ways)
     if course.rest.where == "road":
         some = ways[:: max(len(ways) // _SEEN, 1)]
         off = surface.off(some[..., :2].reshape(-1, 2))[0].reshape(len(some), -1)

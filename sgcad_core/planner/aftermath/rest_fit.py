@@ -134,7 +134,7 @@ class RestFit:
     @property
     def _well(self) -> float:
         """A cost below which further tries are not worth it."""
-        return 0.35 * len(self.wanted)
+        return 0.35 * sum(not self.scene.tracks[name].motion.fixed for name in self.wanted)
 
     @cached_property
     def wanted(self) -> dict[str, CourseTold]:

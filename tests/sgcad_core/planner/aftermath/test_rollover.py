@@ -14,7 +14,7 @@ from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.metrics.rest_error import attitude_of
-from sgcad_core.planner.aftermath.rollover import TRIPPED_S, roll_angles, rolls_over
+from sgcad_core.planner.aftermath.rollover import TRIPPED_S, barrel_costs, roll_angles, rolls_over, turned_over
 from sgcad_core.records.course import CourseTold, RestTold
 
 attitudes = st.sampled_from(["wheels", "roof", "left", "right"])
@@ -122,3 +122,54 @@ def test_the_roll_is_a_column_where_somebody_rolls(tmp_path):
     case_folder.write_trajectories(file, [motion("V1", None)])
     assert "roll_rad" not in file.read_text()
     assert case_folder.read_trajectories(file)[0].roll_rad is None
+
+
+# ------------------------------------------------------------------ what leads
+def sliding_at(slip_deg: float) -> np.ndarray:
+    """Eastbound, the box turned by so many degrees against its way."""
+    poses = sliding(0.0)
+    poses[:, 2] = math.radians(slip_deg)
+    return poses
+
+
+def test_a_roll_with_the_front_ahead_is_a_fault_and_one_with_a_side_ahead_is_none() -> None:
+    ways = np.stack([sliding_at(slip) for slip in (0.0, 20.0, 90.0, -90.0)], axis=1)
+    forward, slightly, left, right = barrel_costs(told(None), ways)
+    assert forward > slightly > left == right == 0.0
+
+
+@pytest.mark.parametrize(("hand", "slip_deg"), [("right", 90.0), ("left", -90.0)])
+def test_the_told_side_must_lead(hand, slip_deg) -> None:
+    course = CourseTold(rolls=True, rolls_to=hand)
+    ways = np.stack([sliding_at(slip_deg), sliding_at(-slip_deg)], axis=1)
+    right, wrong = barrel_costs(course, ways)
+    assert right == 0.0 < wrong
+
+
+def test_a_vehicle_that_is_not_told_to_roll_may_go_on_with_its_front_ahead() -> None:
+    assert not barrel_costs(CourseTold(), sliding_at(0.0)[:, None]).any()
+
+
+@pytest.mark.parametrize(("course", "sign"), [
+    (CourseTold(rolls=True, rolls_to="left"), -1), (CourseTold(rolls=True, rolls_to="right"), 1),
+    (CourseTold(rolls=True, rest=RestTold(attitude="left")), -1), (CourseTold(rolls=True, spin="counterclockwise"), 1),
+])  # fmt: skip
+def test_one_that_touches_nothing_turns_until_a_side_leads(course, sign) -> None:
+    poses = turned_over(sliding(0.0), 20, course)
+    assert not poses[:21, 2].any()
+    assert math.degrees(float(poses[-1, 2])) * sign == pytest.approx(65.0)
+    assert barrel_costs(course, poses[20:, None])[0] == 0.0
+
+
+def test_it_slides_until_a_side_leads_and_rolls_then() -> None:
+    turning = sliding(0.0)
+    turning[:, 2] = np.radians(np.clip((np.arange(160) - 10) * 3.0, 0.0, 90.0))
+    began = [int(np.flatnonzero(roll_angles(poses, 10, told("roof")))[0]) for poses in (sliding(0.0), turning)]
+    assert began[0] < began[1] < 40
+
+
+def test_it_rolls_behind_the_contacts_that_are_told_before_the_roll() -> None:
+    for after, least in ((1, 10), (2, 60), (3, 60)):
+        course = CourseTold(rolls=True, rolls_after=after, rest=RestTold(attitude="roof"))
+        began = int(np.flatnonzero(roll_angles(sliding(0.0), 10, course, (10, 60, 159)))[0])
+        assert began == pytest.approx(least + round(TRIPPED_S / 0.05), abs=2)
