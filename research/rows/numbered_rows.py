@@ -22,8 +22,8 @@ from sgcad_core.reading.reading import Reading
 from sgcad_core.reading.second_reader.field_claims import kind_of
 from sgcad_core.reading.second_reader.learned_reader import hashed
 from sgcad_core.reading.second_reader.learned_reader_features import Account, account_of
-from sgcad_core.reading.second_reader.numbered_answers import first_contact, same
-from sgcad_core.reading.second_reader.numbered_questions import Question, questions
+from sgcad_core.reading.second_reader.numbered.numbered_answers import first_contact, same
+from sgcad_core.reading.second_reader.numbered.numbered_questions import Question, questions
 
 APART_OF = 10
 """Of so many reports that are not blind one teaches the judge alone."""

@@ -1,6 +1,9 @@
-"""Assumptions of a scenario, one per field: defaults, and facts that only follow from stated ones.
+"""Assumptions of a scenario, one per field: defaults, facts that only follow from stated ones, and unsure values.
 
-Knows facts. A model's answer counts as an assumption only where the evidence does not contain it.
+Knows facts. A model's answer counts as an assumption only where the evidence does not contain it. Unsure are values
+whose words often mean something else, as the learned reader of numbered reports has it
+(`sgcad_core.reading.second_reader.numbered.unsure_answers`): guesses, though they were read. A drawing shows legs and
+lanes, and a person knows better: there it is not asked.
 """
 
 from __future__ import annotations
@@ -11,7 +14,11 @@ from collections.abc import Iterable, Iterator
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
 from sgcad_core.account.words import phrase
-from sgcad_core.records.facts import Fact
+from sgcad_core.reading.layout.layout_facts import layout_of_facts
+from sgcad_core.reading.provenance.road_provenance import road_of_bearing
+from sgcad_core.reading.text.compass import turned
+from sgcad_core.records.edits import canonical, effective
+from sgcad_core.records.facts import Fact, Value
 
 _NO_PART = re.compile(r"\.role$|\.lanes_backward$|^others\.[A-Z]\d+\.(start_(lane|road)|exit_road)$")
 """Labels that move nothing, and halves of what is listed once."""
@@ -20,6 +27,10 @@ _FOLLOWS = re.compile(
     r"|junction\.(kind|stem|stopped)$"
 )
 """Fields that count as assumed where their value is inferred from stated facts."""
+
+_WORDS = "of 100 coded reports with such words"
+_DRAWN = ("lanes", "junction")
+"""Questions that a drawing answers."""
 
 
 def assumed_items(made: ExecutedCase, facts: Iterable[Fact]) -> Iterator[Item]:
@@ -68,3 +79,68 @@ def _item(fact: Fact, reason: str, made: ExecutedCase) -> Item:
         kind="assumed", field=fact.field, subject=subject, value=fact.value, text=phrase(fact.field, fact.value),
         reason=reason, start=fact.start, end=fact.end,
     )  # fmt: skip
+
+
+# ------------------------------------------------------------------ words that mean two things
+def unsure_items(made: ExecutedCase) -> Iterator[Item]:
+    """An item for each answer of the reading that is right too seldom, once a field."""
+    given = {canonical(edit.field) for edit in effective(made.reading.edits)}
+    found = dict[str, Item]()
+    for one in made.reading.unsure:
+        kind, _, of = one.question.partition(".")
+        if kind in _DRAWN and (made.pictured or made.network.place):
+            continue
+        field, value, text = _asked(made, kind, of)
+        if field not in given and not (kind == "lanes" and any(_counts_lanes(name) for name in given)):
+            found.setdefault(field, _guess(made, field, value, text, one.p))
+    yield from found.values()
+
+
+def is_unsure(item: Item) -> bool:
+    """Whether an item is a value that was read, and is right too seldom."""
+    return item.kind == "guessed" and item.reason.endswith(_WORDS)
+
+
+def _counts_lanes(field: str) -> bool:
+    return field.startswith("roads.") and ".lane" in field
+
+
+def _guess(made: ExecutedCase, field: str, value: Value, text: str, p: float) -> Item:
+    fact = made.told.get(field)
+    return Item(
+        kind="guessed", field=field, subject=".".join(field.split(".")[:2]) if field[0] != "v" else field.split(".")[1],
+        value=value, text=text or phrase(field, value), reason=f"right in {100 * p:.0f} {_WORDS}",
+        start=fact.start if fact else None, end=fact.end if fact else None,
+    )  # fmt: skip
+
+
+def _asked(made: ExecutedCase, kind: str, of: str) -> tuple[str, Value, str]:
+    """The field that a question asks for, its value, and both in words where the field's name does not say it."""
+    crash, roads = made.reading.crash, made.reading.roads
+    if kind == "lanes":
+        return _lanes(made, of)
+    if kind == "junction":
+        return "junction.kind", roads.junction.kind, ""
+    if kind == "area":
+        role = "striker" if crash.contacts[0].striker == of else "struck"
+        return f"contacts.0.{role}_area", getattr(crash.contacts[0], f"{role}_area"), ""
+    if kind == "met":
+        mine = crash.first_contact(of)
+        other = None if mine is None else mine.struck if mine.striker == of else mine.striker
+        return f"vehicles.{of}.touches", other, f"{of} first touches {other or 'no road user'}"
+    name = "maneuver" if kind == "maneuver" else "heading"
+    return f"vehicles.{of}.{name}", getattr(crash.vehicle(of), name), ""
+
+
+def _lanes(made: ExecutedCase, of: str) -> tuple[str, Value, str]:
+    v = made.reading.crash.vehicle(of)
+    bearing = turned(v.heading, 180) if v is not None and v.heading else ""
+    road = road_of_bearing(made.reading.roads, bearing) or "main"
+    legs = layout_of_facts(made.reading.roads).legs
+    leg = next(leg for leg in legs if leg.bearing == bearing)
+    both = leg.lanes_in + leg.lanes_out
+    return (
+        f"roads.{road}.lanes_total",
+        both,
+        f"the road of {of} has {both} lanes, {leg.lanes_in} of them in its direction",
+    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
-from sgcad_core.account.assumed import assumed_items
+from sgcad_core.account.assumed import assumed_items, unsure_items
 from sgcad_core.account.contacts import actor_items, contact_items
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.motion import motion_items
@@ -13,10 +13,9 @@ from sgcad_core.account.odd_scenes import odd_scenes
 from sgcad_core.account.places import map_items, place_items
 from sgcad_core.account.records import Account, Disagreement, Item
 from sgcad_core.account.second_opinion import weighed
-from sgcad_core.account.told_places import told_place_items
+from sgcad_core.account.told_places import signal_items, told_place_items
 from sgcad_core.account.unread_clauses import unread_clauses
 from sgcad_core.account.unread_text import unread_items
-from sgcad_core.account.unsure import unsure_items
 from sgcad_core.account.verdict import (
     ORDER,
     contradictions,
@@ -65,6 +64,7 @@ def _told(made: ExecutedCase) -> Iterator[Item]:
     yield from place_items(made)
     yield from unread_items(made)
     yield from told_place_items(made)
+    yield from signal_items(made)
     yield from map_items(made)
 
 

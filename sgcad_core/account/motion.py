@@ -204,10 +204,11 @@ def _from_rest(made: ExecutedCase, who: str, value: Value) -> Comparison:
 
 
 def _comes(made: ExecutedCase, who: str, value: Value) -> Comparison:
-    """Whether a vehicle drives, then stands until its first contact."""
+    """Whether a vehicle drives, then stands until its first contact; or stands, and moves off before it."""
     speed = made.tracks[who].speed_mps[: VehicleMotion(made.crash, who).hit]
-    stands = len(speed) > 1 and float(speed[-2]) < _STANDS_MPS
-    return Comparison(stands and float(speed.max()) > _STANDS_MPS, why="it stands from the beginning")
+    stands = len(speed) > 1 and float(speed[-2]) < _STANDS_MPS < float(speed.max())
+    standing = Comparison(stands, why="it stands from the beginning")
+    return _from_rest(made, who, value) if value == "moves_off" else standing
 
 
 def _straddles(made: ExecutedCase, who: str, value: Value) -> Comparison:

@@ -1,4 +1,4 @@
-"""Stated places of actors: at a stop sign, in a roundabout, on foot on one leg of the junction.
+"""Stated places of actors: at a stop sign, at a signal that shows something, in a roundabout, on foot on one leg.
 
 Matches words in the narrative's sentences and compares them with the places in the scenario.
 """
@@ -12,16 +12,22 @@ import numpy as np
 
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
+from sgcad_core.execution.signals import TURNED_S
 from sgcad_core.geometry.distances import distance_to
 from sgcad_core.metrics.rest_error import COMPASS_DEG
 from sgcad_core.reading.language import rule, values
 from sgcad_core.reading.text.normalise import Sentence
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 from sgcad_core.roads.compiled_facts import headings_agree
+from sgcad_core.roads.lane_graph import Connection, edge_id
+from sgcad_core.rules.lights import lights_of
 
 _AT_SIGN, _AROUND, _ON_LEG = rule("account.at_sign"), rule("account.around"), rule("account.on_leg")
 _LEG_DEG = 50.0
 _ON_LANE_M = 2.0
+_MEANS = {"turn_left": "left", "turn_right": "right", "u_turn": "u_turn"}
+_JUST_S = TURNED_S + 2.0
+"""A signal that has shown its state for no longer has just turned to it."""
 _APPROACH_S = 2.0
 """Time before its first contact in which a circulating vehicle must be on the circle."""
 
@@ -42,6 +48,41 @@ def _item(has: bool, sentence: Sentence, about: tuple[str, str, str], text: str,
         kind="has" if has else "lacks", field=f"text.{what}", subject=subject, value=value, text=text,
         reason="" if has else why, start=sentence.start, end=sentence.end,
     )  # fmt: skip
+
+
+# ------------------------------------------------------------------ signals
+def signal_items(made: ExecutedCase) -> Iterator[Item]:
+    """What the signal before a vehicle is told to show at the contact, and that it has turned to it just before. Not of
+    a near crash, nor on a real place, whose lanes the scenario's writer does not name."""
+    contact = made.execution.contact
+    told = {who: state for who, state in made.reading.signals.items() if who in made.tracks}
+    if contact is None or made.network.place is not None or not told:
+        return
+    lights = lights_of(made.graph, made.scenario.xosc)
+    for who, state in told.items():
+        link = _signal_ahead(made, who)
+        shown = lights.at(link, contact.t_s) if lights and link else None
+        why = (
+            f"it shows {shown.state}" if shown else "no signal before it shows anything" if link else "it has no signal"
+        )
+        seen = shown.state if shown else None
+        yield made.item(seen == state, f"vehicles.{who}.signal", state, seen, why=why)
+        if f"vehicles.{who}.signal_turned" in made.told:
+            just = shown is not None and shown.since_s <= _JUST_S
+            yield made.item(
+                just, f"vehicles.{who}.signal_turned", True, why="its signal does not turn before the contact"
+            )
+
+
+def _signal_ahead(made: ExecutedCase, who: str) -> Connection | None:
+    """The connection with a signal by which a vehicle means to leave its road."""
+    behavior = made.scenario.behavior
+    actor = next((a for a in behavior.actors if a.id == who), None) if behavior else None
+    if actor is None or actor.direction is None:
+        return None
+    links = [c for c in made.graph.leaving(edge_id(actor.road, actor.direction)) if c.light]
+    meant = _MEANS.get(actor.maneuver or "", "through")
+    return next((c for c in links if c.direction == meant), next(iter(links), None))
 
 
 # ------------------------------------------------------------------ signs

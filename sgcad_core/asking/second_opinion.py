@@ -18,9 +18,10 @@ from sgcad_core.asking.prompts import answer_schema, load_prompt, parse_answer
 from sgcad_core.case.records import Context, CrashReport, Query, Token
 from sgcad_core.errors import ConfigError, InvalidOutput, Refused
 from sgcad_core.interfaces import Ask
-from sgcad_core.reading.second_reader import learned_reader, numbered_reader
+from sgcad_core.reading.second_reader import learned_reader
 from sgcad_core.reading.second_reader.combiner import FILLS
 from sgcad_core.reading.second_reader.field_claims import KINDS, UNKNOWN_P
+from sgcad_core.reading.second_reader.numbered import numbered_reader
 from sgcad_core.reading.second_reader.seven_question_gist import FIELDS, Gist
 from sgcad_core.records.second_reader import DRAWN, HEARD, LEARNED, WHOLE, Answered, Heard, Opinion, Weights
 from sgcad_core.records.specs import BehaviorSpec, RoadLayout

@@ -72,9 +72,9 @@ class CrashReport(NarrativeRecord):
             with_edits,
         )
         from sgcad_core.reading.second_reader.fuse_gist import fused_with_gist
-        from sgcad_core.reading.second_reader.fuse_numbered import fused_with_guesses
         from sgcad_core.reading.second_reader.fuse_whole import fused_with_answer
-        from sgcad_core.reading.second_reader.unsure_answers import unsure_answers
+        from sgcad_core.reading.second_reader.numbered.fuse_numbered import fused_with_guesses
+        from sgcad_core.reading.second_reader.numbered.unsure_answers import unsure_answers
         from sgcad_core.reading.text.traced_text import placed
 
         found = rules = read(placed(self.narrative, self.places))

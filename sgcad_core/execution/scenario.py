@@ -47,7 +47,9 @@ def compile_scenario(
     planned = plan(behavior, parse_net(network.net_xml), may_skid=may_skid, courses=courses)
     actors = actor_infos(behavior)
     origins = [origin_motion(actor, move) for actor, move in zip(actors, planned.trajectories, strict=True)]
-    times = signal_times(network, origins, signals or {}, planned.contact.t_s if planned.contact else None)
+    turned = frozenset(who for who, told in courses.items() if told.signal_turned)
+    crash_s = planned.contact.t_s if planned.contact else None
+    times = signal_times(network, origins, signals or {}, crash_s, turned)
     plan_of = actors, planned.trajectories, behavior
     if encoding == "events":
         xosc = write_editable(*plan_of, EventOptions(planned.contact, network.xodr), version, times.controllers)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -27,6 +27,8 @@ from sgcad_core.geometry.plane import arc_lengths
 
 SHOWN_S = 0.5
 """Least time from the beginning of the phase to the first stated vehicle at its signal."""
+TURNED_S = 2.0
+"""Time for which a signal shows the state to which it is told to have turned, before the crash or the first passing."""
 _TURN_RAD = 0.6
 _DIRECTIONS = re.compile(r"\((.*)\)")
 
@@ -40,19 +42,26 @@ class SignalTimes(NamedTuple):
 
 
 class _Approach(NamedTuple):
-    """The approach of a vehicle to a signal head: its id, the head, the time of passing (s), the stated state."""
+    """The approach of a vehicle to a signal head: its id, the head, the time of passing (s), the stated state, and
+    whether the signal has turned to it just before."""
 
     actor: str
     head: str
     at_s: float
     state: str
+    turned: bool = False
 
 
 def signal_times(
-    network: RoadNetwork, motions: Sequence[Trajectory], told: Mapping[str, str], crash_s: float | None
+    network: RoadNetwork,
+    motions: Sequence[Trajectory],
+    told: Mapping[str, str],
+    crash_s: float | None,
+    turned: Collection[str] = (),
 ) -> SignalTimes:
     """The programs that show the stated states at the crash (without one: when the first vehicle passes).
 
+    `turned`: vehicles whose signals have turned to that state just before.
     `motions`: of entities' origins. Nothing on a map without signals. Raises InvalidOutput where it is no map.
     """
     graph = parse_net(network.net_xml or "<net/>")
@@ -61,7 +70,10 @@ def signal_times(
     control, roads = control_of(graph, streets(graph)), roads_of(network.xodr)
     if not (wanted := {move.actor: told[move.actor] for move in motions if move.actor in told}):
         return SignalTimes((), ("what the traffic signals showed is not told: the scenario has no phases",))
-    found = {move.actor: _approach(move, control, roads, told[move.actor]) for move in motions if move.actor in wanted}
+    found = {
+        move.actor: _approach(move, control, roads, (told[move.actor], move.actor in turned))
+        for move in motions if move.actor in wanted
+    }  # fmt: skip
     missed = [f"{name} had {told[name]}, but no signal stands on its way" for name, seen in found.items() if not seen]
     times = [_timed(part, crash_s) for part in _programs(control, [a for a in found.values() if a])]
     return SignalTimes(
@@ -71,7 +83,7 @@ def signal_times(
 
 
 # ------------------------------------------------------------------ approaches to signals
-def _approach(move: Trajectory, control: Control, roads: XodrRoads, state: str) -> _Approach | None:
+def _approach(move: Trajectory, control: Control, roads: XodrRoads, told: tuple[str, bool]) -> _Approach | None:
     """The first head on a vehicle's way."""
     place = roads.nearest(Pose(float(move.x_m[0]), float(move.y_m[0]), float(move.heading_rad[0])))
     if place is None:
@@ -83,7 +95,7 @@ def _approach(move: Trajectory, control: Control, roads: XodrRoads, state: str) 
         if heads:
             end_m = float(along[np.flatnonzero(way.which == number)[-1]])
             row = min(int(np.searchsorted(gone, end_m)), len(gone) - 1)
-            return _Approach(move.actor, _for_turn(heads, move).id, float(move.t_s[row]), state)
+            return _Approach(move.actor, _for_turn(heads, move).id, float(move.t_s[row]), *told)
     return None
 
 
@@ -122,8 +134,11 @@ def _timed(part: tuple[list[Controller], list[_Approach]], crash_s: float | None
     if not fits:
         words = " and ".join(f"{a.actor} {a.state}" for a in told)
         return SignalTimes((), (f"no phase of the signals shows {words} at once: the scenario has no phases",))
-    number = max(fits, key=lambda k: controllers[0].phases[k].duration_s)
+    turns = [k for k in fits if all(states[k - 1].get(a.head) != a.state for a in told if a.turned)]
+    number = max(turns or fits, key=lambda k: controllers[0].phases[k].duration_s)
     into = _into(controllers[0].phases[number].duration_s, at_s - min(first_s, at_s))
+    if turns and any(a.turned for a in told):
+        into = min(at_s - min(first_s, at_s) + TURNED_S, max(controllers[0].phases[number].duration_s - SHOWN_S, into))
     return SignalTimes(tuple(_turned(c, number, at_s - into) for c in controllers))
 
 

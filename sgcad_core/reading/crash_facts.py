@@ -6,7 +6,7 @@ it says (relation words, critical events, the sides that touched) and marked as 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.kinds import CHANGES, actor_kind
@@ -264,7 +264,8 @@ def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions, timelin
     if crash.roster.counted:
         vehicles, contacts = _subject_first(vehicles, contacts)
     if crash.near or not crash.roster.counted:  # labels of numbered reports hold the state at the contact throughout
-        vehicles = tuple(replace(v, comes=None) for v in vehicles)
+        kept = () if crash.near else ("moves_off",)
+        vehicles = tuple(v if v.comes in kept else replace(v, comes=None) for v in vehicles)
     return CrashFacts(
         vehicles,
         beside,
@@ -289,3 +290,9 @@ def _near(crash: CrashTold, maneuvers: Mapping[str, Maneuver]) -> NearCrashFacts
     changes = {e.vehicle: CHANGES.get(maneuvers.get(e.vehicle, "other"), 0) for e in near.evasions}
     evasions = tuple((e.vehicle, how) for e in near.evasions if (how := e.beside(changes[e.vehicle])))
     return NearCrashFacts(evasions, near.clearance_m, bool(near.contact_mentions))
+
+
+def with_turned_signals(crash: CrashFacts, turned: Collection[str]) -> CrashFacts:
+    """The crash with the vehicles whose signals are told to have turned just before."""
+    told = {who: replace(crash.courses.get(who, CourseTold()), signal_turned=True) for who in turned}
+    return replace(crash, courses={**crash.courses, **told})

@@ -30,7 +30,7 @@ from sgcad_core.reading.contacts.later_impacts import later_impacts, things_stru
 from sgcad_core.reading.contacts.near_crash import before_evasion, drifts_to, near_miss, near_misses, tells_hit
 from sgcad_core.reading.contacts.road_departure import hand_of_thing, lies_in_road
 from sgcad_core.reading.contacts.untouched_events import untouched_event
-from sgcad_core.reading.crash_facts import CrashFacts, crash_of
+from sgcad_core.reading.crash_facts import CrashFacts, crash_of, with_turned_signals
 from sgcad_core.reading.inference.gaps import (
     Gap,
     contact_untold,
@@ -203,7 +203,7 @@ def events(
         hands |= {thing: hand} if hand else {}
     lying = {word: how for word in things if (how := lies_in_road(word, [t.text for t in named.statements]))}
     crash_told = CrashTold(roster, moved, hits, course, impacts, near, walks, hands, missed, event, lying)
-    return Events(crash_told, conditions(found), signal_states(segments))
+    return Events(crash_told, conditions(found), signal_states(segments, named.statements))
 
 
 def _coded_loss(moved: Mapping[str, VehicleMotion]) -> dict[str, ManeuverCue]:
@@ -220,7 +220,11 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     roads = roads_of(named.statements, named.roster, crash_of(seen.crash_told, inferred, seen.sky, acts))
     roads = with_untold_moves(roads, seen.crash_told, inferred)
     as_read = StageResults(seen.crash_told, inferred, roads.crash, dict(seen.sky.sources))
-    lights = [builder.stated(f"vehicles.{v}.signal", told.state, told.source) for v, told in seen.signals.items()]
+    lights = [
+        builder.stated(f"vehicles.{v}.{name}", value, told.source)
+        for v, told in seen.signals.items()
+        for name, value in (("signal", told.state), ("signal_turned", told.turned)) if value
+    ]  # fmt: skip
     course = course_provenance(builder, seen.crash_told)
     roles = role_facts(builder, named.statements, roads.crash)
     facts = (*crash_provenance(builder, as_read), *lights, *roles, *course, *road_provenance(builder, roads))
@@ -230,6 +234,7 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     lost = bool(rule("meeting.lost").search(narrative))
     acts = tuple(renamed(act, called) for act in acts)
     crash = with_roll_order(crash, acts, narrative)
+    crash = with_turned_signals(crash, {called.get(who, who) for who, told in seen.signals.items() if told.turned})
     return Reading(narrative, found, crash, replace(roads, crash=crash), states, lost, facts, (), acts, called)
 
 

@@ -20,8 +20,9 @@ Spin = Literal["clockwise", "counterclockwise"]
 Hand = Literal["left", "right"]
 HANDS: tuple[Hand, Hand] = ("left", "right")
 Steering = Literal["left", "right", "either"]
-ComesTo = Literal["drives_up", "moves_up"]
-"""How a vehicle comes to the stop at which it is struck: it drives there, or it moves up from another stop."""
+ComesTo = Literal["drives_up", "moves_up", "moves_off"]
+"""How a vehicle comes to the stop at which it is struck: it drives there, or it moves up from another stop; or it has
+stood there and has just begun to move."""
 RestLane = Literal["own", "left", "right", "middle", "left_turn", "right_turn", "center_turn"]
 """A lane at rest by its word; own: the one in which the vehicle began."""
 DepartureSide = RoadSide | Literal["either"]
@@ -89,6 +90,8 @@ class CourseTold:
     """Whether all that is told of the contact speaks of a slight one."""
     corner: tuple[Area, Area] | None = None
     """The end and the flank of the corner at which it touches first: it does so at that part of either."""
+    signal_turned: bool = False
+    """The state of its traffic signal is that to which it is told to have turned just before."""
     inside: bool = False
     """Drives into a junction before its first contact."""
     brakes: bool = False

@@ -28,7 +28,7 @@ WHOLE = "whole"
 WEIGHTS = Path(__file__).parents[1] / "reading" / "second_reader" / "learned.npz"
 """What that reader learned."""
 NUMBERED_WEIGHTS = WEIGHTS.with_name("numbered.npz")
-"""What the reader of numbered reports learned (`sgcad_core.reading.second_reader.numbered_reader`)."""
+"""What the reader of numbered reports learned (`sgcad_core.reading.second_reader.numbered.numbered_reader`)."""
 ENCODER_WEIGHTS = WEIGHTS.with_name("encoder.npz")
 """What the encoder learned that is heard beside it (`sgcad_core.reading.second_reader.encoder_reader`)."""
 
@@ -83,7 +83,8 @@ class Guess(Record):
 
 class Unsure(Record):
     """An answer of the final reading that the learned reader of numbered reports holds to be right less often than
-    `sgcad_core.reading.second_reader.unsure_answers.LEAST_SURE`; `question`: as that reader asks it ("lanes.V1")."""
+    `LEAST_SURE` of `sgcad_core.reading.second_reader.numbered.unsure_answers`; `question`: as that reader asks it
+    ("lanes.V1")."""
 
     question: str
     p: float = Field(ge=0, le=1)

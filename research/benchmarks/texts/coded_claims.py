@@ -14,7 +14,7 @@ from research.benchmarks.texts.coded_cases import is_vehicle, kept_events, lanes
 from research.rows.numbered_rows import codes_of, lanes_told
 from sgcad_core.reading.reading import Reading
 from sgcad_core.reading.roads.road_mentions import axis_of
-from sgcad_core.reading.second_reader.numbered_answers import MANEUVERS, relative, same
+from sgcad_core.reading.second_reader.numbered.numbered_answers import MANEUVERS, relative, same
 
 JUDGED = ("maneuver", "contact", "areas", "heading", "legs", "lanes", "control")
 """Kinds of fields that codes judge."""

@@ -41,10 +41,10 @@ from sgcad_core.reading.reading import Reading, read
 from sgcad_core.reading.second_reader.answered_values import model_claims
 from sgcad_core.reading.second_reader.combiner import FIGURES, FILLS, needed, terms
 from sgcad_core.reading.second_reader.field_claims import KINDS, kind_of, rules_claim
-from sgcad_core.reading.second_reader.fuse_numbered import fused_with_guesses
 from sgcad_core.reading.second_reader.fuse_whole import agree, fused_with_answer
 from sgcad_core.reading.second_reader.learned_support import support_of
-from sgcad_core.reading.second_reader.numbered_reader import guesses
+from sgcad_core.reading.second_reader.numbered.fuse_numbered import fused_with_guesses
+from sgcad_core.reading.second_reader.numbered.numbered_reader import guesses
 from sgcad_core.records.second_reader import HEARD, WHOLE, Answered, Guess, Opinion, Weights
 
 AT_ONCE = 8

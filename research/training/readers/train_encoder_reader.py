@@ -34,11 +34,12 @@ from research.training.readers.encoder_net import UNSEEN, EncoderNet, Size
 from research.training.readers.train_numbered_reader import MENDS, Judge, Judged, crossed, judged
 from research.training.weight_fit import calibration_error, versus
 from sgcad_core.metrics.statistics import mcnemar
-from sgcad_core.reading.second_reader import encoder_reader, numbered_reader
+from sgcad_core.reading.second_reader import encoder_reader
 from sgcad_core.reading.second_reader.encoder_reader import Encoder, answers
 from sgcad_core.reading.second_reader.encoder_tokens import FIRST_WORD, Codes
 from sgcad_core.reading.second_reader.field_claims import kind_of
-from sgcad_core.reading.second_reader.numbered_reader import Kind, Learned
+from sgcad_core.reading.second_reader.numbered import numbered_reader
+from sgcad_core.reading.second_reader.numbered.numbered_reader import Kind, Learned
 from sgcad_core.records.second_reader import ENCODER_WEIGHTS
 
 SEEN_IN = 20

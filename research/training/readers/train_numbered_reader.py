@@ -3,12 +3,13 @@
     python -m research.training.readers.train_numbered_reader POOL.jsonl[.gz] [--rows ROWS.npz] [--limit N]
                                                       [--processes 2] [--out WEIGHTS.npz]
 
-Learned are the readers of `sgcad_core.reading.second_reader.numbered_reader`, kind by kind, on nine tenths of the lines
-that are not blind. The judge is fitted on the tenth that they did not see; its own line there is cross-fitted between
-halves. A kind in which the judge mends too little is left to the rules. Printed are by kind: the share of the rules'
-answers that are right, the share with the reader, how many answers it mends and spoils with the exact McNemar test,
-and the expected calibration error of what stands; of blind lines these totals and nothing else. `--rows` keeps the rows
-between calls: delete it when rules have changed. `--limit`: so many lines, spread over all parts.
+Learned are the readers of `sgcad_core.reading.second_reader.numbered.numbered_reader`, kind by kind, on nine tenths
+of the lines that are not blind. The judge is fitted on the tenth that they did not see; its own line there is cross-
+fitted between halves. A kind in which the judge mends too little is left to the rules. Printed are by kind: the share
+of the rules' answers that are right, the share with the reader, how many answers it mends and spoils with the exact
+McNemar test, and the expected calibration error of what stands; of blind lines these totals and nothing else.
+`--rows` keeps the rows between calls: delete it when rules have changed. `--limit`: so many lines, spread over all
+parts.
 """
 
 from __future__ import annotations
@@ -29,7 +30,15 @@ from research.training.readers.train_learned_reader import multinomial, softmax
 from research.training.weight_fit import calibration_error, logistic, versus
 from sgcad_core.reading.second_reader.field_claims import kind_of
 from sgcad_core.reading.second_reader.learned_reader import READING_WEIGHT, WORDS_NORM, Field, probability
-from sgcad_core.reading.second_reader.numbered_reader import Contest, Kind, Learned, contest, rows_at, save, takes
+from sgcad_core.reading.second_reader.numbered.numbered_reader import (
+    Contest,
+    Kind,
+    Learned,
+    contest,
+    rows_at,
+    save,
+    takes,
+)
 from sgcad_core.records.second_reader import NUMBERED_WEIGHTS
 
 MENDS = 1.5

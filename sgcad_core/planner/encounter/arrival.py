@@ -24,6 +24,8 @@ STANDS_S = 1.5
 MOVES_UP_M = 5.0
 """From its first stop to its last one: about a car's length."""
 _BRAKES_MPS2, _STARTS_MPS2 = 2.4, 1.5
+_MOVES_OFF_S, _MOVING_OFF_S = 1.0, 3.0
+"""Time for which one that has begun to move off is seen moving before it is struck, and for which it gains speed."""
 _STRAIGHT_RAD = 1e-3
 CLOSING_MPS = 2.8
 """Speed over that of the one ahead at which the one behind runs into it in a slight blow: about 6 mph."""
@@ -98,7 +100,10 @@ def _coming(this: _One, other: _One) -> _One:
     if told is None or option.role.actor.maneuver != "stopped" or not motion.standing or not upright:
         return this
     stop_m = float(motion.stations([own_s])[0])
-    time, station = _moves_up(stop_m) if told == "moves_up" else _drives_up(option, motion, stop_m)
+    if told == "moves_off":
+        time, station = _moves_off(stop_m)
+    else:
+        time, station = _moves_up(stop_m) if told == "moves_up" else _drives_up(option, motion, stop_m)
     come = replace(motion, time_s=time, station_m=station, standing=False, begins_m=float(station[1]))
     return (option, come, 0.0) if _is_clear(come, other) else this
 
@@ -129,6 +134,14 @@ def _moves_up(stop_m: float) -> tuple[Floats, Floats]:
         np.concatenate(([-LEAD_S[1]], -since - STANDS_S, [0.0])),
         np.concatenate(([first], first + moved, [stop_m])),
     )
+
+
+def _moves_off(at_m: float) -> tuple[Floats, Floats]:
+    """Times and stations: at its stop, and moving off a little before it is struck there, then on."""
+    since = np.arange(0.0, _MOVES_OFF_S + LEAD_S[1], STEP_S)
+    moved = np.where(since < _MOVING_OFF_S, since**2 / 2, _MOVING_OFF_S * (since - _MOVING_OFF_S / 2)) * _STARTS_MPS2
+    first = at_m - _STARTS_MPS2 * _MOVES_OFF_S**2 / 2
+    return np.append(-LEAD_S[1], since - _MOVES_OFF_S), np.append(first, first + moved)
 
 
 def _is_clear(come: Motion, other: _One, clear_m: float = _CLEAR_M) -> bool:

@@ -15,13 +15,16 @@ from sgcad_core.records.timeline import MOVING, STANDING, Act
 def comes_to_stop(acts: Sequence[Act]) -> ComesTo | None:
     """How a vehicle comes to the stop at which it is struck.
 
-    `moves_up`: it stood, moved on and stopped once more; `drives_up`: it drove there and stopped; None: it is only told
-    to stand. Acts after the first contact and such as are only meant do not count.
+    `moves_up`: it stood, moved on and stopped once more; `drives_up`: it drove there and stopped; `moves_off`: it stood
+    and has begun to move again; None: it is only told to stand. Acts after the first contact and such as are only meant
+    do not count.
     """
     before = [act for act in acts if act.phase == "before" and not act.meant]
     stops = [number for number, act in enumerate(before) if act.kind in STANDING]
-    if not stops or any(act.kind in MOVING for act in before[stops[-1] + 1 :]):
+    if not stops:
         return None
+    if then := [act.kind for act in before[stops[-1] + 1 :] if act.kind in MOVING]:
+        return "moves_off" if set(then) == {"starts"} else None
     moved = [number for number, act in enumerate(before[: stops[-1]]) if act.kind in MOVING]
     if moved and any(number < moved[-1] for number in stops):
         return "moves_up"

@@ -5,7 +5,8 @@ behind one convolution over three tokens. A report is read once. Per vehicle, at
 question (Lee et al. 2019, "Set transformer": pooling by attention) gathers what is said of it: every token is marked by
 whether it is that vehicle or another one, and whether its sentence is about that vehicle or another one. The weights
 (`encoder.npz`, made by `python -m research.training.readers.train_encoder_reader POOL`) hold hashes of words, no words,
-and the judges' figures of the kinds in which the encoder is heard (`sgcad_core.reading.second_reader.numbered_reader`).
+and the judges' figures of the kinds in which the encoder is heard
+(`sgcad_core.reading.second_reader.numbered.numbered_reader`).
 Knows no torch and no model server.
 """
 

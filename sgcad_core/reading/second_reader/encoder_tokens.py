@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.reading.second_reader.learned_reader_features import Account
-from sgcad_core.reading.second_reader.numbered_words import FEW, Said, Token, said_of
+from sgcad_core.reading.second_reader.numbered.numbered_words import FEW, Said, Token, said_of
 from sgcad_core.reading.text.compass import COMPASS
 from sgcad_core.records.specs import Compass
 

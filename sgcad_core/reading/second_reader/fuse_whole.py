@@ -34,8 +34,8 @@ from sgcad_core.reading.second_reader.field_claims import (
     sayable,
     vehicles_of,
 )
-from sgcad_core.reading.second_reader.fuse_numbered import moved
 from sgcad_core.reading.second_reader.learned_support import support_of
+from sgcad_core.reading.second_reader.numbered.fuse_numbered import moved
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.specs import Area, Compass, RoadLayout
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from sgcad_core.reading.second_reader.field_claims import Claims, kind_of
-from sgcad_core.reading.second_reader.numbered_answers import MANEUVERS, relative
+from sgcad_core.reading.second_reader.numbered.numbered_answers import MANEUVERS, relative
 from sgcad_core.reading.text.compass import turned
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from sgcad_core.asking.second_opinion import load_weights, probabilities, with_g
 from sgcad_core.case.records import Context, CrashReport, Diagram, Generation, Query, Token
 from sgcad_core.errors import ConfigError
 from sgcad_core.reading.second_reader.field_claims import KINDS
-from sgcad_core.reading.second_reader.fuse_numbered import RULE as LEARNED_RULE
+from sgcad_core.reading.second_reader.numbered.fuse_numbered import RULE as LEARNED_RULE
 from sgcad_core.reading.second_reader.seven_question_gist import FIELDS
 from sgcad_core.records.second_reader import DRAWN, HEARD, WHOLE
 

@@ -8,7 +8,7 @@ import pytest
 
 from sgcad_core.case.records import RoadNetwork
 from sgcad_core.execution.scenario import compile_scenario
-from sgcad_core.execution.signals import SHOWN_S, signal_times
+from sgcad_core.execution.signals import SHOWN_S, TURNED_S, signal_times
 from sgcad_core.formats.openscenario.check import xosc_findings
 from sgcad_core.formats.openscenario.playing.scene import Scene
 from sgcad_core.formats.openscenario.playing.signal_phases import SignalPlan
@@ -67,6 +67,17 @@ def test_a_told_state_is_shown_at_the_crash_and_was_before(state, crash_s):
     assert len(cycles) == 1
     before = shown(times.controllers, crash_s - SHOWN_S + 0.01) if crash_s >= SHOWN_S else None
     assert before is None or before == shown(times.controllers, crash_s)
+
+
+@pytest.mark.parametrize("state", ["green", "yellow", "red"])
+def test_a_signal_that_is_told_to_turn_shows_another_state_just_before(state):
+    crash_s = 4.2
+    times = signal_times(compiled("signal"), planned()[1], {"V1": state}, crash_s, frozenset({"V1"}))
+    assert times.notes == ()
+    now, before = (shown(times.controllers, t) for t in (crash_s, crash_s - TURNED_S - 2.0))
+    turned = {head for head in now if now[head] == state != before[head]}
+    steady = shown(heads({"V1": state}, crash_s).controllers, crash_s)
+    assert turned & {head for head, seen in steady.items() if seen == state}
 
 
 def test_one_runs_the_red_that_the_other_has_green():

@@ -27,7 +27,7 @@ from sgcad_core.reading.second_reader.encoder_tokens import (
     coded,
 )
 from sgcad_core.reading.second_reader.learned_reader import hashed
-from sgcad_core.reading.second_reader.numbered_words import Said, tokens
+from sgcad_core.reading.second_reader.numbered.numbered_words import Said, tokens
 
 SMALL = Size(width=16, layers=1, heads=2)
 

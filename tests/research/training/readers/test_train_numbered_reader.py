@@ -16,8 +16,8 @@ from research.rows.numbered_rows import Row, codes_of, lines_of, part_of, rows_o
 from research.training.readers import train_numbered_reader
 from research.training.readers.train_numbered_reader import crossed, judged, kept_rows, learn, say, taught
 from sgcad_core.reading.reading import read
-from sgcad_core.reading.second_reader import numbered_reader
 from sgcad_core.reading.second_reader.learned_reader import hashed
+from sgcad_core.reading.second_reader.numbered import numbered_reader
 
 TEXT = "V1 was traveling east on a four lane road. V2 was stopped. The front of V1 struck the back of V2."
 

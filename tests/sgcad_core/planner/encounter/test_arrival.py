@@ -95,3 +95,15 @@ def test_ways_that_cross_in_a_slight_blow_are_driven_slowly() -> None:
     assert slow.realised
     assert track(fast, "V2").speed_mps.max() > 12.0
     assert track(slow, "V2").speed_mps.max() < 7.0
+
+
+def test_one_that_moves_off_has_stood_and_moves_a_little_as_it_is_struck() -> None:
+    made = _struck(CourseTold(comes="moves_off"))
+    one = track(made, "V1")
+    before = slice(0, at_contact(made))
+    speed = one.speed_mps[before]
+    assert made.realised
+    assert (speed[: -round(1.0 / 0.05) - 2] < 0.1).all()
+    assert (np.diff(speed) > -1e-6).all()
+    assert 1.0 < speed[-1] < 2.0
+    assert np.hypot(np.ptp(one.x_m[before]), np.ptp(one.y_m[before])) < 1.0

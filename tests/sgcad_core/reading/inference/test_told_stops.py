@@ -27,3 +27,13 @@ def test_a_stop_is_come_to_where_it_is_told_so(told: str, comes: str | None) -> 
 def test_numbered_vehicles_stand_as_they_are_struck() -> None:
     found = read("V1 was northbound and slowed to a stop at a red light. The front of V2 struck the back of V1.").crash
     assert found.driven.get("V1", CourseTold()).comes is None
+
+
+@pytest.mark.parametrize(("told", "comes"), [
+    ("As the light turned green and V1 began to move,", "moves_off"),
+    ("V1 waited to turn left. Then", None),
+])  # fmt: skip
+def test_one_that_stood_and_has_begun_to_move_moves_off(told, comes) -> None:
+    stood, struck = "V1 was stopped at a red light ahead of V2.", "the front of V2 struck the back of V1."
+    found = read(f"V1 and V2 were northbound. {stood} {told} {struck}").crash
+    assert found.driven.get("V1", CourseTold()).comes == comes

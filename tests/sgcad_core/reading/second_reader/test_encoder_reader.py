@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sgcad_core.errors import ConfigError
-from sgcad_core.reading.second_reader import encoder_reader, numbered_reader
+from sgcad_core.reading.second_reader import encoder_reader
 from sgcad_core.reading.second_reader.encoder_reader import WHOLE_MARK, Encoder, Judge, answers, marks
 from sgcad_core.reading.second_reader.encoder_tokens import (
     FIRST_VEHICLE,
@@ -23,6 +23,7 @@ from sgcad_core.reading.second_reader.encoder_tokens import (
 )
 from sgcad_core.reading.second_reader.field_claims import kind_of
 from sgcad_core.reading.second_reader.learned_reader_features import account_of
+from sgcad_core.reading.second_reader.numbered import numbered_reader
 from sgcad_core.records.second_reader import ENCODER_WEIGHTS
 
 TEXT = "V1 was traveling east on a four lane road. V2 was stopped. The front of V1 struck the back of V2."

@@ -21,7 +21,7 @@ from sgcad_core.reading.second_reader.encoder_tokens import (
     vehicle_number,
 )
 from sgcad_core.reading.second_reader.learned_reader_features import account_of
-from sgcad_core.reading.second_reader.numbered_words import Said, Token
+from sgcad_core.reading.second_reader.numbered.numbered_words import Said, Token
 from sgcad_core.reading.text.compass import COMPASS
 
 TEXT = "V1 was traveling east on a four lane road. V2 was stopped. The front of V1 struck the back of V2."

@@ -3,10 +3,10 @@
 Of the kinds in which it adds to them an encoder that reads the whole report is heard, too
 (`sgcad_core.reading.second_reader.encoder_reader`); their judges have one log ratio more.
 
-Kinds of questions and their features are those of `sgcad_core.reading.second_reader.numbered_questions`, readers and
-files those of `sgcad_core.reading.second_reader.learned_reader`: one reader sees the words and what the rules made of
-them, the other one the words alone. Beside the rules' answer stands the likeliest other one; that it is right where
-only one of both is has the probability
+Kinds of questions and their features are those of `sgcad_core.reading.second_reader.numbered.numbered_questions`,
+readers and files those of `sgcad_core.reading.second_reader.learned_reader`: one reader sees the words and what the
+rules made of them, the other one the words alone. Beside the rules' answer stands the likeliest other one; that it is
+right where only one of both is has the probability
 
     sigmoid(change . (1, log ratio of the first reader, log ratio of the second, 1 if the text tells the rules' answer,
                       1 if it follows from what the text tells))
@@ -45,8 +45,8 @@ from sgcad_core.reading.second_reader.learned_reader import (
     probability,
 )
 from sgcad_core.reading.second_reader.learned_reader_features import account_of
-from sgcad_core.reading.second_reader.numbered_answers import same
-from sgcad_core.reading.second_reader.numbered_questions import Question, questions
+from sgcad_core.reading.second_reader.numbered.numbered_answers import same
+from sgcad_core.reading.second_reader.numbered.numbered_questions import Question, questions
 from sgcad_core.records.second_reader import NUMBERED_WEIGHTS, Guess
 
 TAKES, TAKES_TOLD = 0.6, 0.7

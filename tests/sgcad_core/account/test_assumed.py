@@ -7,8 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from sgcad_core.account.assumed import is_unsure, unsure_items
 from sgcad_core.account.records import Item
-from sgcad_core.account.unsure import is_unsure, unsure_items
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.reading_with_edits import with_edits
 from sgcad_core.records.edits import Edit

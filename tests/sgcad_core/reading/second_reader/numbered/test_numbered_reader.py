@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from sgcad_core.errors import ConfigError
-from sgcad_core.reading.second_reader import numbered_reader
 from sgcad_core.reading.second_reader.field_claims import kind_of
 from sgcad_core.reading.second_reader.learned_reader import Field, hashed
 from sgcad_core.reading.second_reader.learned_reader_features import account_of
-from sgcad_core.reading.second_reader.numbered_answers import same
-from sgcad_core.reading.second_reader.numbered_questions import Question, questions
-from sgcad_core.reading.second_reader.numbered_reader import Kind, Learned, contest
+from sgcad_core.reading.second_reader.numbered import numbered_reader
+from sgcad_core.reading.second_reader.numbered.numbered_answers import same
+from sgcad_core.reading.second_reader.numbered.numbered_questions import Question, questions
+from sgcad_core.reading.second_reader.numbered.numbered_reader import Kind, Learned, contest
 from sgcad_core.records.second_reader import NUMBERED_WEIGHTS
 
 TEXT = (

@@ -23,7 +23,7 @@ from sgcad_core.reading.roads.road_facts import RoadFact
 from sgcad_core.reading.roads.road_mentions import axis_of
 from sgcad_core.reading.second_reader.field_claims import kind_of
 from sgcad_core.reading.second_reader.fuse_gist import TURNS
-from sgcad_core.reading.second_reader.numbered_answers import body_way, first_contact, lanes_of, same
+from sgcad_core.reading.second_reader.numbered.numbered_answers import body_way, first_contact, lanes_of, same
 from sgcad_core.reading.text.compass import turned
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.facts import Value as FactValue

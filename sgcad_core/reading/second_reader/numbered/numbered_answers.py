@@ -1,4 +1,4 @@
-"""The answer that a reading gives to each question of `sgcad_core.reading.second_reader.numbered_questions`.
+"""The answer that a reading gives to each question of `sgcad_core.reading.second_reader.numbered.numbered_questions`.
 
 "+" stands between answers that are the same. Knows no words and no weights.
 """

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.reading import Reading, read
-from sgcad_core.reading.second_reader.fuse_numbered import RULE, fused_with_guesses
-from sgcad_core.reading.second_reader.numbered_answers import lanes_of, relative
+from sgcad_core.reading.second_reader.numbered.fuse_numbered import RULE, fused_with_guesses
+from sgcad_core.reading.second_reader.numbered.numbered_answers import lanes_of, relative
 from sgcad_core.records.facts import Fact
 from sgcad_core.records.second_reader import Guess
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from sgcad_core.reading.reading import read
-from sgcad_core.reading.second_reader.fuse_numbered import fused_with_guesses
-from sgcad_core.reading.second_reader.unsure_answers import LEAST_SURE, unsure_answers
+from sgcad_core.reading.second_reader.numbered.fuse_numbered import fused_with_guesses
+from sgcad_core.reading.second_reader.numbered.unsure_answers import LEAST_SURE, unsure_answers
 from sgcad_core.records.second_reader import Guess, Unsure
 
 TEXT = (

@@ -21,8 +21,22 @@ from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.second_reader.learned_reader_features import Account
-from sgcad_core.reading.second_reader.numbered_answers import answer_of, first_contact, lanes_of, relative, side_of
-from sgcad_core.reading.second_reader.numbered_words import FEW, Voice, first_way, grams, pairs, said_of, tokens
+from sgcad_core.reading.second_reader.numbered.numbered_answers import (
+    answer_of,
+    first_contact,
+    lanes_of,
+    relative,
+    side_of,
+)
+from sgcad_core.reading.second_reader.numbered.numbered_words import (
+    FEW,
+    Voice,
+    first_way,
+    grams,
+    pairs,
+    said_of,
+    tokens,
+)
 from sgcad_core.reading.text.compass import COMPASS
 from sgcad_core.records.facts import Fact, Status
 

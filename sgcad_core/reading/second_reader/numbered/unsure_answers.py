@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
-from sgcad_core.reading.second_reader.numbered_answers import answer_of, same
+from sgcad_core.reading.second_reader.numbered.numbered_answers import answer_of, same
 from sgcad_core.records.second_reader import Guess, Unsure
 
 if TYPE_CHECKING:
