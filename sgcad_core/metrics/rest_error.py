@@ -51,6 +51,8 @@ _SAME_WAY_RAD, _WAY_RAD = math.radians(120.0), math.radians(50.0)
 run against it; one with a stated direction runs within this angle of that."""
 _AGAINST = -0.5
 """Cosine of the angle between a heading and a lane from which on the lane runs against it."""
+_SECOND = 2
+"""The number of the other direction's lane where reports count the lanes of a two-lane road across its center line."""
 _NO_LANE_M = 20.0
 """Error where no such lane is drawn."""
 
@@ -165,9 +167,17 @@ def _beside_lane(
     if told.lane_way is not None:
         along = _apart(ways, compass_rad(COMPASS_DEG[told.lane_way])) < _WAY_RAD
     chosen = np.flatnonzero(fits & (along | np.array([lane == "center" for lane in surface.lanes])))
+    if not len(chosen) and told.lane == _SECOND and told.lane_way is None:
+        chosen = _only_oncoming(surface, came_rad)
     if not len(chosen):
         return np.full(len(poses), _NO_LANE_M)
     return surface.part(chosen.tolist()).off(poses[:, :2])[0] - _LANE_EDGE_M
+
+
+def _only_oncoming(surface: RoadSurface, came_rad: float) -> NDArray[np.int_]:
+    """The pieces of the lanes that run against a heading on roads with one lane each way: their second lane."""
+    single = np.array([not isinstance(lane, str) and lane.lanes == 1 for lane in surface.lanes])
+    return np.flatnonzero(single & (np.cos(surface.ways - came_rad) < _AGAINST))
 
 
 def _is_lane(told: int | RestLane | None, lane: OfLane) -> bool:

@@ -35,7 +35,7 @@ from sgcad_core.planner.later.drive_away import LEAVES_S, drive_away
 from sgcad_core.planner.later.later_meetings import LaterMeetings
 from sgcad_core.planner.lead_time import lead_alone, lead_of
 from sgcad_core.planner.lines.actor_course import Course
-from sgcad_core.planner.lines.departures import departs, departure_station
+from sgcad_core.planner.lines.departures import comes_back, departs, departure_station
 from sgcad_core.planner.lines.gore_lines import into_gores
 from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.lines.told_moves import off_and_back, off_on_one_side, with_room
@@ -222,11 +222,10 @@ class _Cast:
         return scene
 
     def _let_through(self, scene: Scene, first: Contact) -> None:
-        """Lets a thing that is struck first give way where it is a loose piece, or its vehicle strikes something else
-        after it or rolls over."""
-        track, thing = scene.tracks[first.struck], self.actors[first.struck]
-        rolls = self.told.get(first.striker, CourseTold()).rolls
-        track.flat, goes_on = thing.flat, rolls or any(first.striker in pair_of(c) for c in self.contacts[1:])
+        """Lets a thing that is struck first give way where it is loose, or its vehicle goes on behind it."""
+        track, thing, who = scene.tracks[first.struck], self.actors[first.struck], self.actors[first.striker]
+        its, further = self.told.get(who.id, CourseTold()), any(who.id in pair_of(c) for c in self.contacts[1:])
+        track.flat, goes_on = thing.flat, further or its.rolls or comes_back(who.maneuver, its)
         if track.motion.fixed and not thing.flat and (goes_on or thing.loose):
             track.let_pass(glances=is_passed(thing, first.striker_area), stays=thing.firm)
 

@@ -29,7 +29,7 @@ from sgcad_core.planner.encounter.pairing import GOOD, Encounter, Stage, Ways, c
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.box_angles import ASKEW
 from sgcad_core.planner.lines.crossing import implied_crossings
-from sgcad_core.planner.lines.departures import departs, departure_sides, departure_station, side_of
+from sgcad_core.planner.lines.departures import comes_back, departs, departure_sides, departure_station, side_of
 from sgcad_core.planner.lines.told_moves import with_room
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
 from sgcad_core.planner.long_things import runs_along
@@ -169,11 +169,13 @@ class Conflicts:
         return any(self.told.get(actor.id, CourseTold()).inside for actor in pair)
 
     def _goes_on(self, actor: str, contact: Contact) -> bool:
-        """Whether an actor on wheels strikes something else after a contact, or rolls over behind a thing."""
+        """Whether an actor on wheels strikes something else after a contact, or behind a thing rolls over or comes back
+        to the road."""
         told = list(self.behavior.contacts)
         later = told[told.index(contact) + 1 :] if contact in told else []
-        rolls = self.actors[contact.struck].record.thing and self.told.get(actor, CourseTold()).rolls
-        return self.actors[actor].record.wheeled and (rolls or any(c.striker == actor for c in later))
+        own, its = self.actors[actor], self.told.get(actor, CourseTold())
+        past = self.actors[contact.struck].record.thing and (its.rolls or comes_back(own.maneuver, its))
+        return own.record.wheeled and (past or any(c.striker == actor for c in later))
 
     def _set_rolling(self, a: Actor, b: Actor) -> Actor:
         mover = b if a.record.thing else a

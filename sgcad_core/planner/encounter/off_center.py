@@ -16,7 +16,7 @@ from sgcad_core.geometry.plane import Floats, Size, sides_at
 from sgcad_core.planner.actor_plan import Role
 from sgcad_core.planner.aftermath.struck_objects import GLANCE_M
 from sgcad_core.planner.encounter.pairing import Encounter
-from sgcad_core.planner.lines.departures import side_of
+from sgcad_core.planner.lines.departures import comes_back, side_of
 from sgcad_core.planner.motion import Motion
 from sgcad_core.records.specs import Actor, Area, size_m
 
@@ -24,6 +24,8 @@ NARROW_M = 1.2
 """A wider thing has no side of its own."""
 SHARES = (0.45, 0.72, 0.25)
 """Of half the side: how far beside its middle the thing stands where the report tells a rotation or a facing."""
+_DEEPER_M = (0.4,)
+"""Overlap with a firm thing that throws a vehicle back to the road, where the usual one does not suffice."""
 USUAL = 0.5
 """The same where it tells neither."""
 
@@ -32,6 +34,14 @@ def beside_middle(found: Encounter) -> list[Encounter]:
     """The encounter with the thing at several places along the side that strikes it, the likeliest first; [] where no
     narrow thing is struck."""
     return list(_beside_middle(found))
+
+
+def at_corner(found: Encounter) -> Encounter | None:
+    """The encounter with the thing at the corner of the vehicle that glances off it; None where none does so."""
+    pair = (found.first.role, found.second.role), (found.second.role, found.first.role)
+    if any(role.actor.record.thing and by.actor.record.wheeled and _glances(by, role) for role, by in pair):
+        return next(_beside_middle(found), None)
+    return None
 
 
 def _beside_middle(found: Encounter) -> Iterator[Encounter]:
@@ -53,12 +63,15 @@ def _beside_middle(found: Encounter) -> Iterator[Encounter]:
 def _shares(role: Role, thing: Role) -> tuple[float, ...]:
     """Signed shares of half a side: positive turns the vehicle counter-clockwise.
 
-    A firm thing off which the vehicle glances stands at the corner.
+    A firm thing off which the vehicle glances stands at the corner: on the outer side where it throws the vehicle back
+    to the road.
     """
     if _glances(role, thing):
-        share = 1.0 + (thing.size[1] - 2 * GLANCE_M) / role.size[1]
-        to_left = role.spins > 0 if role.spins else side_of(role.actor.maneuver, role.told.departs) == "left"
-        return (share if to_left else -share,)
+        back = comes_back(role.actor.maneuver, role.told)
+        shares = [1.0 + (thing.size[1] - 2 * m) / role.size[1] for m in (GLANCE_M, *_DEEPER_M * back)]
+        turned = 0.0 if back else role.spins
+        to_left = turned > 0 if turned else side_of(role.actor.maneuver, role.told.departs) == "left"
+        return tuple(share if to_left else -share for share in shares)
     if role.spins:
         return tuple(math.copysign(share, role.spins) for share in SHARES)
     return (USUAL if side_of(role.actor.maneuver, role.told.departs) == "left" else -USUAL,)

@@ -16,7 +16,7 @@ from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact
 from sgcad_core.planner.encounter.blow_turns import misturned, turns_told
 from sgcad_core.planner.encounter.encounter_search import along_sides
 from sgcad_core.planner.encounter.motion_options import Option
-from sgcad_core.planner.encounter.off_center import beside_middle
+from sgcad_core.planner.encounter.off_center import at_corner, beside_middle
 from sgcad_core.planner.encounter.out_of_lanes import OUT
 from sgcad_core.planner.encounter.pairing import Encounter, part_of
 from sgcad_core.planner.scene import Scene
@@ -98,7 +98,7 @@ def _speeds(found: Encounter, *, again: bool) -> tuple[tuple[float, float], ...]
     if again:
         return (*_SPEEDS, *_SPEEDS_AGAIN)
     rests = [option.role.told.rest for option in (found.first, found.second)]
-    if any(rest.distance_m == AT_IMPACT_M for rest in rests):
+    if any(rest.distance_m is not None and rest.distance_m <= AT_IMPACT_M for rest in rests):
         return (*_SPEEDS_SHORT, *_SPEEDS)
     aside = any(rest.side is not None and rest.where == "off_road" for rest in rests)
     return (_SPEEDS[0], *_SPEEDS_ASIDE, *_SPEEDS[1:]) if aside else _SPEEDS
@@ -106,20 +106,28 @@ def _speeds(found: Encounter, *, again: bool) -> tuple[tuple[float, float], ...]
 
 def _along(found: Encounter, factors: tuple[float, float]) -> Iterator[Encounter]:
     """Places all along the stated sides, at other speeds."""
-    first, second = (_paced(o, k) for o, k in zip((found.first, found.second), factors, strict=True))
-    if not (first and second):
+    if factors != (1.0, 1.0) and not any(_may_vary(option) for option in (found.first, found.second)):
         return
+    first, second = (_paced(o, k) for o, k in zip((found.first, found.second), factors, strict=True))
     one, two = first.motion_with(second), second.motion_with(first)
     parts = part_of(first.role), part_of(second.role)
     if one.drivable and two.drivable:
         for meeting in along_sides(one, two, found.meeting.sides, _PLACES, parts):
             if meeting.cost < min(OUT, found.meeting.cost + _WORSE):
-                yield Encounter(first, second, meeting)
+                other = Encounter(first, second, meeting)
+                if glancing := at_corner(other):
+                    yield glancing
+                    return
+                yield other
 
 
-def _paced(option: Option, factor: float) -> Option | None:
-    """An option at another speed; None where its speed is stated or it stands."""
-    if factor == 1.0:
+def _may_vary(option: Option) -> bool:
+    """Whether the speed of an option is free: it moves, and its speed is not stated."""
+    return option.role.actor.speed_mph is None and not option.motion.standing
+
+
+def _paced(option: Option, factor: float) -> Option:
+    """An option at another speed; the same where its speed is stated or it stands."""
+    if factor == 1.0 or not _may_vary(option):
         return option
-    told = option.role.actor.speed_mph is not None or option.motion.standing
-    return None if told else replace(option, pacing=option.pacing._replace(factor=option.pacing.factor * factor))
+    return replace(option, pacing=option.pacing._replace(factor=option.pacing.factor * factor))

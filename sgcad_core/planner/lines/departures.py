@@ -18,7 +18,7 @@ from sgcad_core.planner.actor_plan import Drift, Role, usual_speed
 from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.path import ramp_length_m
-from sgcad_core.records.course import DepartureSide
+from sgcad_core.records.course import CourseTold, DepartureSide
 
 OFF_ROAD_M = 4.0
 """From the edge of the road to a vehicle that has left it."""
@@ -54,6 +54,14 @@ def side_of(maneuver: Maneuver, told: DepartureSide | None) -> DepartureSide | N
     """The side on which the road is left: told last, else that of the maneuver; "either" names no side."""
     of_maneuver = {1: "left", -1: "right"}.get(DEPARTURES.get(maneuver, 0))
     return of_maneuver if of_maneuver and told in (None, "either") else told  # type: ignore[return-value]
+
+
+def comes_back(maneuver: Maneuver, told: CourseTold) -> bool:
+    """Whether a vehicle that leaves the road is told to come to rest on it, or beyond its other side."""
+    side, rest = side_of(maneuver, told.departs), told.rest
+    if side is None:
+        return False
+    return rest.where in ("road", "intersection") or {side, rest.side} == {"left", "right"}
 
 
 def departure_station(course: Course, maneuver: Maneuver, usual_m: float, *, beyond: bool = False) -> float:

@@ -50,6 +50,16 @@ def test_a_lane_that_is_not_drawn_is_never_right() -> None:
     assert not any(right(RestTold(lane="center_turn"), north)["lane"] for north in CENTERS.values())
 
 
+def test_the_second_lane_of_a_two_lane_road_is_that_of_the_other_direction() -> None:
+    starts, stops = np.array([(-50.0, -1.75), (50.0, 1.75)]), np.array([(50.0, -1.75), (-50.0, 1.75)])
+    lane = Position(1, 1, NONE, NONE, 1, 1)
+    two_lane = RoadSurface(starts, stops, np.full(2, WIDTH / 2), (), (lane, lane))
+    poses = np.array([[0.0, 1.75, 0.0], [0.0, -1.75, 0.0]])
+    second, third = (rest_errors(RestTold(lane=number), poses, 0.0, two_lane).lane_m for number in (2, 3))
+    assert (second <= 0.0).tolist() == [True, False]
+    assert (third > 0.0).all()
+
+
 def test_a_median_lies_left_of_its_lanes() -> None:
     told = RestTold(where="median")
     assert right(told, 0.5)["where"]

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from sgcad_core.geometry.plane import local_points
 from sgcad_core.planner.encounter.conflict import Conflicts
-from sgcad_core.planner.encounter.off_center import beside_middle
+from sgcad_core.planner.encounter.off_center import at_corner, beside_middle
 from sgcad_core.planner.lines.maneuver_course import course_of
-from sgcad_core.records.course import CourseTold
+from sgcad_core.records.course import CourseTold, RestTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
 from tests.sgcad_core.planner.crash_scenes import network
 
 
-def into_thing(told: CourseTold, size_m: float = 0.4):
+def into_thing(told: CourseTold, size_m: float = 0.4, *, firm: bool = False):
     """The encounter of V1 eastbound with a thing beside its road."""
     actors = (
         Actor(id="V1", kind="car", road="W", direction="forward", exit_road="E", maneuver="departing_road_right"),
         Actor(id="O1", kind="object", road="E", direction="forward", maneuver="stopped", length_m=size_m,
-              width_m=size_m),
+              width_m=size_m, firm=firm),
     )  # fmt: skip
     contact = Contact(striker="V1", struck="O1", striker_area="front", struck_area="front")
     behavior = BehaviorSpec(actors=actors, contacts=(contact,))
@@ -43,6 +45,18 @@ def test_the_thing_stands_on_the_side_to_which_the_vehicle_is_told_to_turn(spin:
     assert len(places) > 1
     assert min(places) > 0.2
     assert max(places) < 0.9
+
+
+def test_a_pole_that_throws_a_vehicle_back_to_the_road_stands_at_the_outer_corner_at_two_depths() -> None:
+    told = CourseTold(departs="right", spin="counterclockwise", rest=RestTold(where="road"))
+    found = into_thing(told, firm=True)
+    places = [left_m(one) for one in beside_middle(found)]
+    assert len(places) == 2
+    assert places[0] < places[1] < -0.7  # the corner is 0.9 m to the right of the middle
+    corner = at_corner(found)
+    assert corner is not None
+    assert left_m(corner) == pytest.approx(places[0])
+    assert at_corner(into_thing(replace(told, rest=RestTold(where="off_road")), firm=True)) is None
 
 
 def test_without_a_told_turn_it_stands_a_little_off_the_middle() -> None:

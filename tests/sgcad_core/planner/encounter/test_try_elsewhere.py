@@ -29,11 +29,13 @@ def test_without_an_encounter_nothing_else_is_tried() -> None:
     assert calls == [(None, IMPACTS)]
 
 
-def crossing(**speeds: float):
-    """V1 eastbound and V2 southbound on a crossroads, as the search finds their encounter; with it their motions."""
+def crossing(**speeds: float | str):
+    """V1 eastbound and V2 southbound on a crossroads, as the search finds their encounter; with it their motions. A
+    speed is told, or "stopped"."""
     actors = tuple(
-        Actor(id=name, kind="car", road=road, direction="forward", exit_road=exit_road, maneuver="straight",
-              speed_mph=speeds.get(name))
+        Actor(id=name, kind="car", road=road, direction="forward", exit_road=exit_road,
+              maneuver="stopped" if speeds.get(name) == "stopped" else "straight",
+              speed_mph=None if speeds.get(name) == "stopped" else speeds.get(name))
         for name, road, exit_road in (("V1", "W", "E"), ("V2", "N", "S"))
     )  # fmt: skip
     contact = Contact(striker="V1", struck="V2", striker_area="front", struck_area="right")
@@ -79,6 +81,19 @@ def test_a_told_speed_is_kept_in_every_attempt() -> None:
     assert {(one.first.pacing, one.second.pacing) for one in tried} == {(first.first.pacing, first.second.pacing)}
 
 
+def test_where_one_speed_is_told_or_one_stands_the_other_one_is_varied() -> None:
+    for found in (crossing(V2=25.0), crossing(V2="stopped")):
+        tried = []
+
+        def unfold(one, impacts, tried=tried):
+            tried.append(one)
+            return WholeCourse(Scene(10, 2), (), 0.0, 2.0)
+
+        least_missed(found, unfold)
+        assert len({one.first.pacing.factor for one in tried}) > 2
+        assert {one.second.pacing for one in tried} == {found.second.pacing}
+
+
 @pytest.mark.parametrize("bend", [0.0, 0.3])
 def test_the_moment_of_a_touch_is_found_between_two_samples(bend: float) -> None:
     rng = np.random.default_rng(1)
@@ -95,6 +110,7 @@ def test_slow_speeds_are_tried_first_where_a_rest_at_the_impact_is_told() -> Non
     first = found.first.role
     for rest, speeds in (
         (RestTold(distance_m=AT_IMPACT_M), (0.5, 0.5)),
+        (RestTold(distance_m=1.0), (0.5, 0.5)),
         (RestTold(where="off_road", side="right"), (1.0, 1.0)),
         (RestTold(), (1.0, 1.0)),
     ):
