@@ -206,3 +206,19 @@ def test_a_told_distance_goes_before_the_place_of_the_impact() -> None:
 def test_one_that_turns_by_the_first_contact_did_not_lose_control(told: str, lost: bool) -> None:
     crash = read(f"V1 was northbound. V2 was southbound on the same road. V3 was behind V2. {told}").crash
     assert crash.courses.get("V1", CourseTold()).lost_control is lost
+
+
+@pytest.mark.parametrize(
+    ("words", "where", "side"),
+    [
+        ("departed the roadway to the right, where its left side scraped a fence", "off_road", "right"),
+        ("came to rest on its left side in a field", "off_road", None),
+        ("came to rest on its right side in the roadway", "road", None),
+        ("departed the roadway to its left side and came to rest in a field", "off_road", "left"),
+        ("came to rest down a slight embankment on the right side of the roadway", "off_road", "right"),
+        ("came to rest in the ditch on the east side of the road", "off_road", "E"),
+    ],
+)  # fmt: skip
+def test_the_side_of_a_rest_is_one_of_the_road_not_of_the_vehicle(words: str, where: str, side: str | None) -> None:
+    rest = course(f"{HIT}Vehicle #2 {words}.", "V2").rest
+    assert (rest.where, rest.side) == (where, side)
