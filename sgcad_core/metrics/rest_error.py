@@ -51,6 +51,8 @@ _SAME_WAY_RAD, _WAY_RAD = math.radians(120.0), math.radians(50.0)
 run against it; one with a stated direction runs within this angle of that."""
 _AGAINST = -0.5
 """Cosine of the angle between a heading and a lane from which on the lane runs against it."""
+_CARRIED_M = 2.0
+"""Way along a road that a vehicle crossed from which on it was carried along it."""
 _SECOND = 2
 """The number of the other direction's lane where reports count the lanes of a two-lane road across its center line."""
 _NO_LANE_M = 20.0
@@ -88,8 +90,9 @@ def rest_errors(
     facing = None if told.facing_deg is None else _apart(poses[:, 2], compass_rad(told.facing_deg)) - FACING_RAD
     where = None if told.where is None else _misplaced(told, poses, (off, bearing, nearest), surface)
     side = None if told.side is None or told.where in ("road", "intersection") else (
-        np.where(off < SHOULDER_M[0], math.pi, _beside(told.side, poses, (bearing, nearest), came_rad, surface))
-        - SIDE_RAD
+        np.where(
+            off < SHOULDER_M[0], math.pi, _beside(told.side, poses, (bearing, nearest), (came_rad, began), surface)
+        ) - SIDE_RAD
     )  # fmt: skip
     return RestErrors(facing, where, side, _beside_lane(told, poses, came_rad, surface, began))
 
@@ -207,19 +210,18 @@ def _own_lanes(surface: RoadSurface, began: Floats) -> NDArray[np.bool_]:
 
 
 def _beside(
-    side: Compass | Hand, poses: Floats, lane: tuple[Floats, NDArray[np.int_]], came_rad: float, surface: RoadSurface
+    side: Compass | Hand,
+    poses: Floats,
+    lane: tuple[Floats, NDArray[np.int_]],
+    came: tuple[float, Floats | None],
+    surface: RoadSurface,
 ) -> Floats:
     """Angle between the stated side and the direction of the point: from the nearest lane, or from the center of the
-    junction. `lane`: bearing from the nearest lane, and its piece.
-
-    Between two carriageways a point lies left of both: seen from the far one it would lie on the right.
+    junction. `lane`: bearing from the nearest lane, and its piece; `came`: as in `rest_errors`.
     """
     bearing, nearest = lane
     if side in ("left", "right"):
-        ways = surface.ways[nearest]
-        beyond = (np.sin(bearing - ways) > 0.0) & (np.cos(ways - came_rad) < _AGAINST)
-        seen = np.where(beyond, bearing + math.pi, bearing)
-        return _apart(seen, came_rad + (math.pi / 2 if side == "left" else -math.pi / 2))
+        return _on_hand(math.pi / 2 if side == "left" else -math.pi / 2, poses, bearing, surface.ways[nearest], came)
     wanted = compass_rad(COMPASS_DEG[side])
     best = _apart(bearing, wanted)
     across = np.abs(np.sin(surface.ways[nearest] - wanted)) > _ACROSS
@@ -229,6 +231,25 @@ def _beside(
         seen = _apart(np.arctan2(dy, dx), wanted)
         best = np.where(near, np.where(across, np.minimum(best, seen), seen * SIDE_RAD / _CORNER_RAD), best)
     return best
+
+
+def _on_hand(
+    hand_rad: float, poses: Floats, bearing: Floats, ways: Floats, came: tuple[float, Floats | None]
+) -> Floats:
+    """Angle between a hand of the road and the direction of the point from the nearest lane, which runs along `ways`.
+
+    Between two carriageways a point lies left of both: seen from the far one it would lie on the right. A road that
+    runs across the way of a vehicle has its hands as seen in the direction in which it was carried along that road.
+    """
+    came_rad, began = came
+    beyond = (np.sin(bearing - ways) > 0.0) & (np.cos(ways - came_rad) < _AGAINST)
+    own = _apart(np.where(beyond, bearing + math.pi, bearing), came_rad + hand_rad)
+    if began is None:
+        return own
+    along_m = (poses[:, 0] - began[0]) * np.cos(ways) + (poses[:, 1] - began[1]) * np.sin(ways)
+    across = (np.abs(np.cos(ways - came_rad)) < -_AGAINST) & (np.abs(along_m) > _CARRIED_M)
+    carried = np.where(along_m > 0.0, ways, ways + math.pi)
+    return np.where(across, np.abs(wrap_angle(bearing - carried - hand_rad)), own)
 
 
 def in_words(rest: RestTold, errors: RestErrors) -> Iterator[str]:

@@ -77,6 +77,20 @@ def test_the_median_is_never_on_the_right_of_a_vehicle_that_came_on_either_carri
     assert right(off_road["left"], 10.0)["side"]
 
 
+@pytest.mark.parametrize(("carried_m", "north_m", "side"), [
+    (15.0, 12.0, "left"), (15.0, -12.0, "right"), (-15.0, 12.0, "right"), (-15.0, -12.0, "left"),
+])  # fmt: skip
+def test_a_road_that_was_crossed_has_its_hands_as_seen_along_it(carried_m: float, north_m: float, side: str) -> None:
+    began, came_rad = np.array([0.0, -40.0, np.pi / 2]), np.pi / 2
+    pose = np.array([[carried_m, north_m, 0.0]])
+    for hand in ("left", "right"):
+        told = RestTold(where="off_road", side=hand)
+        assert rest_errors(told, pose, came_rad, road(), began).right()["side"] is (hand == side)
+    straight_on = np.array([[0.5, 12.0, 0.0]])
+    told = RestTold(where="off_road", side="left")
+    assert not rest_errors(told, straight_on, came_rad, road(), began).right()["side"]
+
+
 @pytest.mark.parametrize(("told_m", "met_m", "fits"), [
     (AT_IMPACT_M, 0.0, True), (AT_IMPACT_M, 4.9, True), (AT_IMPACT_M, 5.1, False),
     (10.0, 12.9, True), (10.0, 5.0, False),
