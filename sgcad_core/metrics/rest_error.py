@@ -44,8 +44,9 @@ _ACROSS, _CORNER_RAD = math.cos(math.radians(30.0)), math.radians(45.0)
 which each has a quarter."""
 _CORNER_M = 45.0
 """A side is seen from the center of a junction within this distance."""
-_LANE_EDGE_M = 0.3
-"""By which a center may lie over the edge of its lane, as in `lane_places`."""
+_EDGE_M = 0.3
+"""By which a center may lie over the edge of its lane, as in `lane_places`, or over the ends of the lanes at its
+junction."""
 _SAME_WAY_RAD, _WAY_RAD = math.radians(120.0), math.radians(50.0)
 """A lane without a stated direction runs within this angle of the vehicle's heading at its first contact: it does not
 run against it; one with a stated direction runs within this angle of that."""
@@ -145,7 +146,7 @@ def _misplaced(
         return np.maximum(SHOULDER_M[0] - off, off - SHOULDER_M[1])
     if told.where == "intersection" and surface.junctions:
         closest: Floats = np.min([junction.out_m(poses[:, :2]) for junction in surface.junctions], axis=0)
-        return closest
+        return closest - _EDGE_M
     if told.where == "intersection":
         return off - OFF_M
     beyond = OFF_M + 0.05 - off
@@ -174,7 +175,7 @@ def _beside_lane(
         chosen = _only_oncoming(surface, came_rad)
     if not len(chosen):
         return np.full(len(poses), _NO_LANE_M)
-    return surface.part(chosen.tolist()).off(poses[:, :2])[0] - _LANE_EDGE_M
+    return surface.part(chosen.tolist()).off(poses[:, :2])[0] - _EDGE_M
 
 
 def _only_oncoming(surface: RoadSurface, came_rad: float) -> NDArray[np.int_]:

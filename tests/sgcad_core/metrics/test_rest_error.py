@@ -106,10 +106,11 @@ def crossing() -> RoadSurface:
 
 
 @pytest.mark.parametrize(("place", "inside"), [
-    ((0.0, 0.0), True), ((3.0, -4.0), True), ((0.0, 16.0), False), ((-17.0, -2.0), False), ((10.0, 10.0), False),
+    ((0.0, 0.0), True), ((3.0, -4.0), True), ((7.8, -2.0), True), ((8.2, -2.0), False), ((0.0, 16.0), False),
+    ((-17.0, -2.0), False), ((10.0, 10.0), False),
 ])  # fmt: skip
 def test_in_the_intersection_is_within_the_ends_of_the_lanes(crossing, place, inside) -> None:
-    found = rest_errors(RestTold(where="intersection"), np.array([[*place, 0.0]]), 0.0, crossing)
+    found = rest_errors(RestTold(where="intersection"), np.array([[*place, 0.0]]), 0.0, crossing)  # lanes end at 7.6 m
     assert found.right()["where"] == inside
 
 
