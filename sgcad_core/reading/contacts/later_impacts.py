@@ -91,9 +91,9 @@ def _ranked(read: ImpactRead, texts: Mapping[int, str], pairs: Sequence[tuple[in
 
 
 def _of_mention(mention: ContactMention, roster: Roster) -> ImpactRead | None:
-    """A thing that a verb of touching tells; None of vehicles, of people and of what one drives over."""
+    """A thing that a verb of touching tells; None of vehicles, of people and of the ground."""
     person = any(user.search(mention.other) for user in of_role("road_user"))
-    if mention.other in roster.ids or person or mention.other in GROUND or mention.role in _RETOLD:
+    if mention.other in roster.ids or person or mention.other == "ground" or mention.role in _RETOLD:
         return None
     area = side_met(mention.actor_area)
     impact = ImpactTold(mention.actor, _word(mention.other), area)
@@ -169,7 +169,7 @@ def _things(segment: Segment) -> Iterator[ImpactRead]:
             continue
         for thing in _listed(segment.text, m):
             end = thing.end()
-            if thing["thing"] not in GROUND:
+            if thing["thing"] != "ground":
                 hits = [_hit(segment, m, thing, vehicle) for vehicle in segment.subjects]
                 yield from hits * _count(segment.text, m, thing)
 

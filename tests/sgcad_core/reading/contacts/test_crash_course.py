@@ -108,9 +108,19 @@ def test_a_spin_is_the_struck_ones(words: str, spin: str, degrees: float | None)
 
 
 # ------------------------------------------------------------------ later impacts
+@pytest.mark.parametrize("what", ["curb", "ditch", "raised island"])
+def test_what_is_driven_over_behind_the_first_contact_is_struck(what: str) -> None:
+    text = f"{HIT} Vehicle #2 then struck a {what} with its right front tire."
+    assert impacts(text) == [("V2", what.split()[-1])]
+
+
+def test_the_ground_is_no_thing_that_is_struck() -> None:
+    assert impacts(f"{HIT} Vehicle #2 then struck the ground.") == []
+
+
 def test_things_are_hit_in_the_order_of_the_text() -> None:
     text = f"{HIT} Vehicle #1 then struck a utility pole. Vehicle #2 continued and hit a curb and a wooden fence."
-    assert impacts(text) == [("V1", "pole"), ("V2", "fence")]
+    assert impacts(text) == [("V1", "pole"), ("V2", "curb"), ("V2", "fence")]
 
 
 def test_what_was_hit_before_the_vehicles_met_is_marked() -> None:
