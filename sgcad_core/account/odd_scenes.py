@@ -18,7 +18,7 @@ from sgcad_core.metrics.labels.observed_crash import VehicleMotion
 from sgcad_core.metrics.lane_places import lane_steps
 from sgcad_core.metrics.rest_error import whirls
 from sgcad_core.planner.aftermath.rails import stands_on_road
-from sgcad_core.planner.long_things import runs_along
+from sgcad_core.planner.long_things import MOST_FLARE_DEG, runs_along
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Actor
 from sgcad_core.roads.lane_positions import position
@@ -26,8 +26,8 @@ from sgcad_core.roads.lane_positions import position
 _STANDS_MPS = 0.3
 _INTO_M = 1.0
 """By which a front may be over the edge of a junction."""
-_SLANTED_RAD = math.radians(12.0)
-"""Angle to the road of what runs along it, at most."""
+_SLANTED_RAD = math.radians(MOST_FLARE_DEG + 1.0)
+"""Angle to the road of what runs along it, at most: a bend turns the road by a degree over the length of a thing."""
 _WHIRLS_RAD, _MOST_SPIN_RAD = math.radians(115.0), math.radians(330.0)
 """A rotation on the spot that is one, and the most of a rotation of which no degrees are told."""
 _LEAVES_M = 1.5
@@ -73,12 +73,20 @@ def _rail(made: ExecutedCase, actor: Actor) -> Iterator[Item]:
     if not runs_along(actor) or actor.gore:
         return
     pose, surface = made.crash.paths[actor.id].pose[:1], made.crash.surface
-    _, _, nearest = surface.nearest(pose[:, :2])
-    angle = math.remainder(float(pose[0, 2] + math.pi / 2 - surface.ways[nearest[0]]), math.pi)
+    angle = _slant(made, actor.id, float(pose[0, 2]) + math.pi / 2)
     in_lanes = bool(stands_on_road(surface, pose, made.sizes[actor.id])[0])
-    if abs(angle) > _SLANTED_RAD or in_lanes:
-        why = "it reaches into the lanes" if in_lanes else f"it stands at {math.degrees(abs(angle)):.0f} degrees to it"
+    if angle > _SLANTED_RAD or in_lanes:
+        why = "it reaches into the lanes" if in_lanes else f"it stands at {math.degrees(angle):.0f} degrees to it"
         yield _item(f"others.{actor.id}.place", actor.id, f"{actor.id} along the road", why)
+
+
+def _slant(made: ExecutedCase, thing: str, runs_rad: float) -> float:
+    """The least angle of a thing that runs in a direction to a road beside it: at a corner it runs along either one.
+    The ways across a junction are no roads."""
+    roads = made.crash.surface.roads
+    away = roads.from_pieces(made.crash.paths[thing].pose[:1, :2])[0][0]
+    ways = roads.ways[away <= away.min() + made.sizes[thing][1] / 2]
+    return min(abs(math.remainder(runs_rad - float(way), math.pi)) for way in ways)
 
 
 def _ending(made: ExecutedCase, actor: Actor) -> Iterator[Item]:
@@ -105,11 +113,12 @@ def _ending(made: ExecutedCase, actor: Actor) -> Iterator[Item]:
 
 
 def _lying(made: ExecutedCase) -> Iterator[Item]:
-    """What lies in the road lies in its lanes."""
+    """What lies in the road lies in its lanes, and an animal that comes from beside it is there when it is struck."""
     for other in made.reading.crash.others:
         if other.lies is None or other.id not in made.tracks:
             continue
-        if float(made.crash.surface.off(made.crash.paths[other.id].pose[:1, :2])[0][0]) > 0.0:
+        place = made.crash.paths[other.id].pose[made.crash.first_of(other.id)][None, :2]
+        if float(made.crash.surface.off(place)[0][0]) > 0.0:
             yield _item(f"others.{other.id}.place", other.id, f"{other.id} ({other.word}) in the road",
                         "it lies beside the road")  # fmt: skip
 

@@ -19,7 +19,9 @@ _LEAST_M, _SHAPE = 4.0, 2.5
 _BY_END_RAD, _BY_FLANK_RAD = math.radians(32.0), math.radians(10.0)
 """Angle between a vehicle and the thing that its front or back corner meets, and its flank. A corner lies on the front
 from arctan(width / length) on: 21 degrees on a car."""
-FLARES = ((0.0, 0.0), (8.0, 0.7), (16.0, 1.0), (32.0, 1.4))
+MOST_FLARE_DEG = 12.0
+"""The largest angle to the road of a thing that runs along it, degrees: what exceeds it slants into the lanes."""
+FLARES = ((0.0, 0.0), (8.0, 0.7), (MOST_FLARE_DEG, 1.0), (32.0, 1.4))
 """Angles in degrees at which the thing may come closer to the road, with their costs: along it wherever the told side
 then meets it."""
 _ALONG_END_RAD, _ALONG_FLANK_RAD = math.radians(25.0), math.radians(10.0)

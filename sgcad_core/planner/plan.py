@@ -38,7 +38,7 @@ from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.departures import comes_back, departs, departure_station
 from sgcad_core.planner.lines.gore_lines import into_gores
 from sgcad_core.planner.lines.maneuver_course import course_of
-from sgcad_core.planner.lines.told_moves import off_and_back, off_on_one_side, with_room
+from sgcad_core.planner.lines.told_moves import off_and_back, off_on_one_side, off_to_median, with_room
 from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
 from sgcad_core.planner.motion import STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.near_crash.near_miss import near_encounter
@@ -86,11 +86,10 @@ def plan(
     """
     behavior = into_gores(behavior)
     courses = off_and_back(courses, (s.by for s in struck_before(behavior, behavior.contacts) if s.thing.firm))
-    first = behavior.first_meeting
-    things = [a.id for a in behavior.actors if a.record.thing]
-    courses = off_on_one_side(courses, [first.striker] if first and first.struck in things else [])
+    courses = off_on_one_side(courses, behavior)
     gentle = gentle_mps2(DRIVING.friction_mps2(behavior.surface))
     lines = with_company(behavior, {a.id: course_of(graph, a, gentle) for a in behavior.actors}, courses)
+    courses = off_to_median(courses, behavior, lines)
     conflicts = Conflicts(behavior, lines, may_skid, by_force, courses)
     cast = _Cast(behavior, lines, tractors(behavior), courses, [note for line in lines.values() for note in line.notes])
     contacts, near = cast.contacts, behavior.near_crash

@@ -77,6 +77,11 @@ class RoadSurface(NamedTuple):
         chosen = [n for n, aside in enumerate(self.driveways) if not aside]
         return self.part(chosen) if chosen else self
 
+    @property
+    def roads(self) -> RoadSurface:
+        """Without the ways across junctions."""
+        return self.part([n for n, lane in enumerate(self.lanes) if lane != "junction"])
+
     def off(self, points: Floats) -> tuple[Floats, Floats]:
         """(m,) distance of (m, 2) points beyond the edge of the nearest lane (negative: on it), and the (m,) bearing
         from it.
@@ -88,15 +93,20 @@ class RoadSurface(NamedTuple):
 
     def nearest(self, points: Floats) -> tuple[Floats, Floats, NDArray[np.int_]]:
         """As `off`, and the (m,) number of the nearest piece of each point."""
+        beyond, dx, dy = self.from_pieces(points)
+        nearest = np.argmin(beyond, axis=1)
+        rows = np.arange(len(points))
+        return beyond[rows, nearest], np.arctan2(dy[rows, nearest], dx[rows, nearest]), nearest
+
+    def from_pieces(self, points: Floats) -> tuple[Floats, Floats, Floats]:
+        """(m, n) distances of (m, 2) points beyond the edge of each piece, and the way to them from its center line to
+        the east and to the north, metres."""
         east, north = (self.ends - self.starts).T
         square = np.maximum(east**2 + north**2, 1e-9)
         dx, dy = (points[:, i, None] - self.starts[None, :, i] for i in (0, 1))
         share = np.clip((dx * east + dy * north) / square, 0.0, 1.0)
         dx, dy = dx - share * east, dy - share * north
-        beyond = np.hypot(dx, dy) - self.halves
-        nearest = np.argmin(beyond, axis=1)
-        rows = np.arange(len(points))
-        return beyond[rows, nearest], np.arctan2(dy[rows, nearest], dx[rows, nearest]), nearest
+        return np.hypot(dx, dy) - self.halves, dx, dy
 
 
 def road_surface(graph: LaneGraph) -> RoadSurface:

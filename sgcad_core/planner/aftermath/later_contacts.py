@@ -211,7 +211,7 @@ class Ending:
             if along:
                 yield f"{strike.thing.id} stands in the lanes, where nothing runs along the road"
         else:
-            leave_beside(self.scene, strike)
+            leave_beside(self.scene, strike, surface)
             yield f"{strike.by} does not reach {strike.thing.id}, which it strikes as told"
 
     def _is_met(

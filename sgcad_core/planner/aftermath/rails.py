@@ -12,7 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import Floats, Size
-from sgcad_core.planner.long_things import beside, corner_side, hand_of_side, is_long, meeting_angle, turned_to
+from sgcad_core.planner.long_things import (
+    MOST_FLARE_DEG,
+    beside,
+    corner_side,
+    hand_of_side,
+    is_long,
+    meeting_angle,
+    turned_to,
+)
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import Track
 from sgcad_core.records.specs import Area
@@ -23,7 +31,8 @@ DEPTH_M = 0.05
 OUTWARD_MPS = 0.5
 """Outward speed of a side of the box that can strike an object."""
 _OFF_ROAD_M = 0.3
-_FLARES, ANOTHER_SIDE, SLANTED = ((0.0, 0), (8.0, 1), (-8.0, 1), (16.0, 2), (-16.0, 2)), 3, 4
+_FLARES = ((0.0, 0), (8.0, 1), (-8.0, 1), (MOST_FLARE_DEG, 2), (-MOST_FLARE_DEG, 2))
+ANOTHER_SIDE, SLANTED = 3, 4
 """Angles to the road at which a long thing may run, degrees, with their ranks; the rank of one along the road that is
 met with another side than told, and that from which on one stands across: the last resort."""
 
@@ -35,7 +44,7 @@ def along_road(
     to it with the stated side, last along the road where another side meets it."""
     poses = track.poses[samples.astype(int)]
     by = (poses - track.poses[samples.astype(int) - 1])[:, :2] / STEP_S
-    roads = surface.part([n for n, lane in enumerate(surface.lanes) if lane != "junction"])
+    roads = surface.roads
     _, _, nearest = roads.nearest(poses[:, :2])
     for k, pose, speed, way in zip(samples.astype(int), poses, by, roads.ways[nearest], strict=True):
         outward = float(speed[1] * math.cos(way) - speed[0] * math.sin(way))
@@ -47,6 +56,12 @@ def along_road(
             if told or not flare_deg:
                 rank = rank if told else ANOTHER_SIDE
                 yield rank, beside(pose, track.size, size, away + math.pi, DEPTH_M), int(k)
+
+
+def across_road(surface: RoadSurface, place: Floats) -> float:
+    """The heading of a long thing at a (2,) place that runs along the nearest road."""
+    _, _, nearest = surface.roads.nearest(place[None])
+    return float(surface.roads.ways[nearest[0]]) + math.pi / 2
 
 
 def along_way(track: Track, k: int, side: Area, size: Size) -> Iterator[Floats]:

@@ -20,6 +20,7 @@ from sgcad_core.planner.aftermath.rails import (
     DEPTH_M,
     OUTWARD_MPS,
     SLANTED,
+    across_road,
     along_road,
     along_way,
     stands_on_road,
@@ -84,18 +85,20 @@ class Strike:
         return self.goes_on and self.thing.firm and passes and not runs_along(self.thing)
 
 
-def leave_beside(scene: Scene, strike: Strike) -> None:
-    """Places an object that is not reached beyond the rest of its vehicle."""
-    _stand(scene, strike, _out_of_reach(scene, strike))
+def leave_beside(scene: Scene, strike: Strike, surface: RoadSurface) -> None:
+    """Places an object that is not reached beyond the rest of its vehicle, a long one along the road."""
+    _stand(scene, strike, _out_of_reach(scene, strike, surface))
     scene.settle()
 
 
-def _out_of_reach(scene: Scene, strike: Strike) -> Floats:
+def _out_of_reach(scene: Scene, strike: Strike, surface: RoadSurface) -> Floats:
     """A place ahead of the rest of the vehicle, at the first distance where no actor ever is."""
     size, track = size_m(strike.thing), scene.tracks[strike.by]
     x, y, heading = (float(v) for v in track.poses[-1])
     for away in (*_PAST_M, 500.0):
-        pose = np.array([x + away * math.cos(heading), y + away * math.sin(heading), heading])
+        place = np.array([x + away * math.cos(heading), y + away * math.sin(heading)])
+        faces = across_road(surface, place) if runs_along(strike.thing) else heading
+        pose = np.array([*place, faces])
         if _is_free(scene, strike, pose, size, len(track.poses)):
             break
     return pose

@@ -30,9 +30,9 @@ _OUT_OF_GORE, _INTO_GORE_M = 0.5, 8.0
 """Cost of each metre between the encounter and the gore of one actor, and the distance into the gore."""
 _BEFORE_TURN_M = 12.0
 """Distance before a turn at which the box still points along the road: it starts to turn before the junction."""
-_OVER_MEDIAN, _RAIL_SLACK_M, _CLEARLY_OFF_M = 1.5, 0.3, 0.4
-"""Cost of meeting what stands in the median in the lanes beyond it, and how far it may reach there; by which the front
-of a vehicle that meets it is off its lanes at least."""
+_OVER_MEDIAN, _CLEARLY_OFF_M = 1.5, 0.4
+"""Cost of meeting what stands in the median in the lanes beyond it; by which the front of a vehicle that meets it is
+off its lanes at least."""
 _IN_MOUTH = 0.6
 """Cost of an encounter beside the road where another road joins, for one that leaves the road."""
 _WAITS_BEFORE_M = 8.0
@@ -91,7 +91,7 @@ def _front_and_rail(role: Role, path: Path) -> tuple[Floats, NDArray[np.bool_]]:
     angle = path.heading_rad - np.interp(path.s_m, course.path.s_m, course.path.heading_rad)
     front = offsets(course.path, path, path.s_m)[1] + role.size[0] / 2 * np.sin(angle)
     met = front + np.sign(angle) * role.size[1] / 2 * np.cos(angle)
-    room = course.own_left_m + max(course.median_m - role.other_long_m, course.median_m / 2) + _RAIL_SLACK_M
+    room = course.own_left_m + max(course.median_m - role.other_long_m, course.median_m / 2)
     return front - np.sign(angle) * _CLEARLY_OFF_M, (met > room) & has_median(course) & (met < course.left_edge_m)
 
 

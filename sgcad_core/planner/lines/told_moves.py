@@ -7,16 +7,19 @@ of it; no other actor and no time.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 from sgcad_core.kinds import Maneuver
 from sgcad_core.planner.actor_plan import Drift, Role, Swing, usual_speed
-from sgcad_core.planner.lines.departures import departure_sides, left_of_road_m, way_off_m
+from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.lines.departures import departure_sides, has_median, left_of_road_m, way_off_m
 from sgcad_core.planner.lines.path import ramp_length_m
+from sgcad_core.planner.long_things import runs_along
 from sgcad_core.planner.motion import HARD_MPS2
-from sgcad_core.records.course import Courses, Move
+from sgcad_core.records.course import Courses, CourseTold, Move
+from sgcad_core.records.specs import Actor, BehaviorSpec
 
 _PARTLY_M = 1.0
 """Over the edge of the road: a vehicle that comes back on it."""
@@ -54,17 +57,36 @@ def off_and_back(told: Courses, to_things: Iterable[str]) -> Courses:
     return {who: replace(course, moves=ways.get(who, course.moves)) for who, course in told.items()}
 
 
-def off_on_one_side(told: Courses, to_things: Iterable[str]) -> Courses:
-    """The stated courses, where vehicles that leave the road on a told side, meet a thing there (`to_things`) and come
-    to rest off the road do so on that side."""
-    found = dict(told)
-    for who in (name for name in to_things if name in told):
+def _thing_met(behavior: BehaviorSpec) -> tuple[Actor, Actor] | None:
+    """The vehicle that meets a thing first of all, and that thing."""
+    first, actors = behavior.first_meeting, {a.id: a for a in behavior.actors}
+    if first is None or not {first.striker, first.struck} <= actors.keys():
+        return None
+    return (actors[first.striker], actors[first.struck]) if actors[first.struck].record.thing else None
+
+
+def off_on_one_side(told: Courses, behavior: BehaviorSpec) -> Courses:
+    """The stated courses, where a vehicle that leaves the road on a told side, meets a thing there and comes to rest
+    off the road does so on that side."""
+    found, met = dict(told), _thing_met(behavior)
+    for who in (actor.id for actor in (met or ())[:1] if actor.id in told):
         course = told[who]
         beside = course.rest.where in ("off_road", "shoulder") and course.rest.side is None
         side = course.departs
         if beside and not course.moves and side is not None and side != "either":
             found[who] = replace(course, rest=replace(course.rest, side=side))
     return found
+
+
+def off_to_median(told: Courses, behavior: BehaviorSpec, lines: Mapping[str, Course]) -> Courses:
+    """The stated courses, where a vehicle that crosses the line on its left and meets what runs along a road with a
+    median leaves the road to that side: the thing lies in the median. `lines`: the actors' courses on the road."""
+    actor, thing = _thing_met(behavior) or (None, None)
+    if actor is None or thing is None or not runs_along(thing) or not has_median(lines[actor.id]):
+        return told
+    course = told.get(actor.id, CourseTold())
+    crosses = actor.maneuver == "crossing_centerline" and not (course.departs or course.moves)
+    return {**told, actor.id: replace(course, departs="left")} if crosses else told
 
 
 def last_move(role: Role) -> Move | None:

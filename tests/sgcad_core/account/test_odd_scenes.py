@@ -63,6 +63,13 @@ def test_a_rail_runs_along_the_road_beside_its_lanes(made, turned_deg, x_m, odd)
     assert ("others.V2.place" in fields(moved(case, "V2", poses))) is odd
 
 
+@pytest.mark.parametrize(("turned_deg", "odd"), [(0, False), (90, False), (45, True)])
+def test_a_rail_at_a_corner_runs_along_either_road(made, turned_deg, odd):
+    case = with_actor(made, kind="object", length_m=0.4, width_m=14.0, firm=True, maneuver="stopped")
+    poses = np.tile([18.0, 12.0, math.pi + math.radians(turned_deg)], (len(case.tracks["V2"].t_s), 1))
+    assert ("others.V2.place" in fields(moved(case, "V2", poses))) is odd
+
+
 @pytest.mark.parametrize(("turn_deg", "way_m", "odd"), [(150, 1.0, True), (150, 30.0, False), (40, 1.0, False)])
 def test_a_wreck_turns_as_it_slides_and_not_on_the_spot(made, turn_deg, way_m, odd):
     track, hit = made.tracks["V2"], made.crash.first_of("V2")
@@ -79,6 +86,16 @@ def test_what_lies_in_the_road_lies_in_its_lanes(made):
     count = len(case.tracks["V2"].t_s)
     assert "others.V2.place" in fields(moved(case, "V2", np.tile([20.0, 60.0, 0.0], (count, 1))))
     assert "others.V2.place" not in fields(moved(case, "V2", np.tile([1.6, 60.0, 0.0], (count, 1))))
+
+
+def test_an_animal_that_comes_from_beside_the_road_is_in_it_when_it_is_struck(made):
+    crash = replace(made.reading.crash, others=(OtherFacts("V2", "animal", "elk", lies="along"),))
+    case = replace(made, reading=replace(made.reading, crash=crash))
+    track, hit = case.tracks["V2"], case.crash.first_of("V2")
+    poses = track.pose.copy()
+    poses[: hit // 2, 0] += 60.0
+    assert made.crash.surface.off(poses[:1, :2])[0][0] > 0.0
+    assert "others.V2.place" not in fields(moved(case, "V2", poses))
 
 
 def test_one_that_rests_on_the_road_does_not_leave_it_first(made):

@@ -91,6 +91,26 @@ def test_what_runs_along_the_road_stands_parallel_to_it_and_beside_its_lanes(dep
     assert not stands_on_road(road_surface(graph), rail, (0.4, 14.0))[0]
 
 
+@pytest.mark.parametrize("median", ["barrier", "raised", "grass"])
+@pytest.mark.parametrize("lanes", [1, 2, 3])
+def test_what_runs_along_the_median_stays_clear_of_the_lanes_beyond_it(median, lanes):
+    met = Contact(striker="V1", struck="O1", striker_area="front", struck_area="front")
+    graph = roads(median=median, lanes_in=lanes, lanes_out=lanes)
+    made = plan(BehaviorSpec(actors=(CAR, RAIL), contacts=(met,)), graph, courses={"V1": CourseTold(departs="left")})
+    assert made.realised
+    assert not stands_on_road(road_surface(graph), made.trajectories[1].pose[:1], (0.4, 14.0))[0]
+
+
+def test_a_vehicle_that_drifts_over_its_left_line_meets_a_curb_in_the_median():
+    drifts = CAR.model_copy(update={"maneuver": "crossing_centerline"})
+    curb = RAIL.model_copy(update={"length_m": 0.3, "width_m": 12.0, "firm": False, "flat": True})
+    met = Contact(striker="V1", struck="O1", striker_area="front", struck_area="front")
+    graph = roads(median="raised")
+    made = plan(BehaviorSpec(actors=(drifts, curb), contacts=(met,)), graph, courses={"V1": CourseTold()})
+    assert made.realised
+    assert not stands_on_road(road_surface(graph), made.trajectories[1].pose[:1], (0.3, 12.0))[0]
+
+
 def test_a_vehicle_that_leaves_the_road_on_a_side_rests_off_it_on_that_side():
     met = Contact(striker="V1", struck="O1", striker_area="front", struck_area="front")
     told = {"V1": CourseTold(departs="right", rest=RestTold(where="off_road"))}
