@@ -20,6 +20,7 @@ from sgcad_core.account.verdict import (
     ORDER,
     contradictions,
     guesses,
+    implied_swings,
     odd_driving,
     places,
     sentence_of,
@@ -51,7 +52,7 @@ def account_of(
     told += odd_scenes(made)
     told += [*contradictions(made), *guesses(made), *unsure_items(made)]
     ranked = sorted(told, key=lambda item: ORDER.index(item.kind))
-    items = (*ranked, *assumed_items(made, facts))
+    items = (*ranked, *assumed_items(made, facts), *implied_swings(notes))
     verdict = verdict_of(items, differing)
     said = sentence_of(verdict, items, differing)
     return Account(verdict=verdict, sentence=said, items=items, disagreements=tuple(differing))

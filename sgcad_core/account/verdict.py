@@ -15,6 +15,7 @@ from sgcad_core.account.words import phrase
 from sgcad_core.kinds import ALLEY, DRIVEWAY, Maneuver
 from sgcad_core.metrics.untold_places import untold_places
 from sgcad_core.planner.encounter.maneuver_choices import UNTOLD
+from sgcad_core.planner.lines.turning import WIDE
 from sgcad_core.reading.crash_facts import VehicleFacts
 from sgcad_core.reading.provenance.crash_provenance import CONFIDENCE
 from sgcad_core.records.course import CourseTold
@@ -87,6 +88,18 @@ def untold_swerves(made: ExecutedCase, notes: Sequence[Note]) -> Iterator[Item]:
             yield Item(
                 kind="lacks", field=f"vehicles.{note.subject}.driving", subject=note.subject, value=None,
                 text=f"{note.subject} in ordinary driving", reason=f"it {words}, which is not told",
+            )  # fmt: skip
+
+
+def implied_swings(notes: Sequence[Note]) -> Iterator[Item]:
+    """An assumption for each turn that swings wide because no line within the lanes meets the other one on the told
+    sides. What is driven on the wrong side before it turns, or behind the turn, lacks all the same (`places`)."""
+    for note in notes:
+        if note.kind == "plan" and note.text == f"{note.subject} {WIDE}":
+            yield Item(
+                kind="assumed", field=f"vehicles.{note.subject}.line", subject=note.subject, value=None,
+                text=f"{note.subject} swings wide in its turn",
+                reason="no line within its lanes meets the other one on the told sides",
             )  # fmt: skip
 
 

@@ -17,6 +17,7 @@ from sgcad_core.planner.encounter.meeting_place import TURNING, Place, meeting_p
 from sgcad_core.planner.encounter.motion_options import (
     Option,
     aimed,
+    along,
     forced,
     options,
     plainly,
@@ -25,12 +26,14 @@ from sgcad_core.planner.encounter.motion_options import (
     steeply,
     turned,
 )
+from sgcad_core.planner.encounter.pacing_choices import pacings
 from sgcad_core.planner.encounter.pairing import GOOD, Encounter, Stage, Ways, cannot, search
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.box_angles import ASKEW
 from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.departures import comes_back, departs, departure_sides, departure_station, side_of
 from sgcad_core.planner.lines.told_moves import with_room
+from sgcad_core.planner.lines.turning import wide_lines
 from sgcad_core.planner.lines.walkers import crosswalk_station, walking_courses
 from sgcad_core.planner.long_things import runs_along
 from sgcad_core.planner.stationary_actors import needs_angle, parked_beside_m
@@ -49,8 +52,8 @@ _SLIGHT_RAD, _SLIGHTLY = math.radians(25.0), 8
 """Angle at which a standing vehicle is still in line with the others, and the number of such options."""
 _SLIGHT = 60
 """Combinations tried with a standing vehicle that is turned so, where an end is told to meet a flank."""
-_TURNING = 40
-"""Combinations tried with other lines of a turn."""
+_TURNING, _WIDE, _ALL = 40, 200, 6000
+"""Combinations tried with other lines of a turn, with those that swing wide, and to know that no other one will do."""
 
 
 @dataclass
@@ -114,6 +117,9 @@ class Conflicts:
 
         yield Stage(both(_as_told), _AS_TOLD, _TOLD_ENOUGH)
         plain = both(plainly)
+        if wide_lines(a) or wide_lines(b):
+            yield Stage(both(_as_told), _ALL, _TOLD_ENOUGH)  # a wide turn is forced only where none of these meets
+            yield Stage(both(lambda role: along(role, wide_lines(role), pacings(role))), _WIDE)
         if implied_crossings(a) or implied_crossings(b):
             steep = both(steeply)
             yield Stage((steep[0], plain[1]), _TRIES[0])

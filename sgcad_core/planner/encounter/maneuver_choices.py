@@ -18,7 +18,7 @@ from sgcad_core.planner.lines.crossing import LEAVES, brushing, crossings, end_m
 from sgcad_core.planner.lines.departures import DEPARTURES, GENTLY, aside_m, change_of_line, departs
 from sgcad_core.planner.lines.lost_control import lost_lines
 from sgcad_core.planner.lines.told_moves import last_move, with_earlier
-from sgcad_core.planner.lines.turning import corner_lines
+from sgcad_core.planner.lines.turning import corner_lines, wide_lines
 from sgcad_core.records.course import Move, Steering
 
 _LANE_CHANGES = ("lane_change_left", "lane_change_right", "merge")
@@ -230,6 +230,8 @@ def _other_lanes(role: Role) -> list[Drift]:
 
 def _swerves(role: Role) -> list[Drift]:
     place, found = role.place, []
+    if wide_lines(role):  # it leaves its lane in the turn, not before it
+        return _from_beside(role)
     note = HEAD_ON if comes_against(role) and (role.side, role.other_side) == ("front", "front") else LEAVES
     if place.apart_m > 1.2 and abs(math.sin(place.angle_rad)) < 0.5 and abs(place.aside_m) < 16:
         for extra, cost in ((0.0, 0.3), (0.7, 0.33), (-0.7, 0.33), (1.4, 0.36), (-1.4, 0.36)):

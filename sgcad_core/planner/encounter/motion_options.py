@@ -7,7 +7,7 @@ swerves, other speeds and skids cost more. Knows one actor, its course and its m
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -101,10 +101,9 @@ class Option:
 
 def options(role: Role) -> list[Option]:
     """All options of an actor, cheapest first; cached by role, so that motions are computed once."""
-    known: list[Option] | None = role.kept.get("options")
-    if known is None:
-        known = role.kept["options"] = _sorted(role, _parts(role))
-    return list(known)
+    if "options" not in role.kept:
+        role.kept["options"] = _sorted(role, _parts(role))
+    return list(role.kept["options"])
 
 
 def _parts(role: Role) -> Iterable[tuple[Drift, Pacing, Twist]]:
@@ -134,15 +133,18 @@ def plainly(role: Role) -> list[Option]:
 
 def steeply(role: Role) -> list[Option]:
     """Those whose change of line is steep and implied by what is told; the plain ones where none is."""
-    lines = implied_crossings(role)
-    return _sorted(role, product(lines, pacings(role)[:3], (Twist(0.0),))) if lines else plainly(role)
+    return along(role, implied_crossings(role), pacings(role)[:3])
 
 
 def turned(role: Role) -> list[Option]:
     """All lines and usual speeds of a turn; the plain options of other maneuvers."""
-    if role.course.turn is None or role.actor.maneuver not in TURNING:
-        return plainly(role)
-    return _sorted(role, product([Drift(0.0), *corner_lines(role)], pacings(role), (Twist(0.0),)))
+    turns = role.course.turn is not None and role.actor.maneuver in TURNING
+    return along(role, [Drift(0.0), *corner_lines(role)] if turns else [], pacings(role))
+
+
+def along(role: Role, lines: Sequence[Drift], paces: Sequence[Pacing]) -> list[Option]:
+    """The options along some lines; the plain ones where there are none."""
+    return _sorted(role, product(lines, paces, (Twist(0.0),))) if lines else plainly(role)
 
 
 def forced(role: Role) -> list[Option]:

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from sgcad_core.planner.actor_plan import Drift, Role, along_with
 from sgcad_core.planner.lines.actor_course import Passage
 
@@ -14,6 +16,29 @@ _CORNER_RUN_M = 10.0
 """Length before and behind a junction on which a cut corner is beside the lane."""
 _STARTED_RUN_M = 3.0
 """The same of one that stands at the line first, square in its lane."""
+
+WIDE = "swings wide in its turn, as the told sides imply"
+_WIDE_M, _WIDE_STEP_M, _WIDE_COST = 1.2, 0.8, (0.3, 0.01)
+"""Least way over its lane of a turn that swings wide, and between two such; their cost, and that of each metre."""
+_WIDE_FROM_M, _WIDE_TO_M, _WIDE_MORE_M = 2.0, 4.0, 1.0
+"""From the start of the swing to the junction, and from the junction to its end; how far beyond the line of the other
+one it may lead."""
+
+
+def wide_lines(role: Role) -> list[Drift]:
+    """Right turns that swing over the lanes of oncoming traffic in the road which they enter, the least first: from the
+    lane as told, and no earlier than they turn."""
+    turn = role.course.turn
+    if turn is None or role.actor.maneuver != "turn_right":
+        return []
+    most = max(role.course.left_edge_m, role.place.aside_m + _WIDE_MORE_M)
+    ends = ((turn.entry_m + turn.exit_m) / 2, turn.exit_m, turn.exit_m + _WIDE_TO_M)
+    begins = turn.entry_m - _WIDE_FROM_M
+    return [
+        Drift(_WIDE_COST[0] + _WIDE_COST[1] * left, left, end - begins, end, note=WIDE)
+        for left in np.arange(_WIDE_M, most, _WIDE_STEP_M).tolist()
+        for end in ends
+    ]
 
 
 def corner_lines(role: Role) -> list[Drift]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sgcad_core.kinds import PARKING_LOT, RAMP, ROUNDABOUT
+from sgcad_core.kinds import FOUR_LEG, PARKING_LOT, RAMP, ROUNDABOUT, T
 from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.inference.inference_state import CrashInferred, CrashTold
@@ -20,11 +20,13 @@ from sgcad_core.reading.text.compass import against, between
 from sgcad_core.records.course import CourseTold
 from sgcad_core.records.specs import Maneuver
 
-OVER_MIDDLE, BESIDE = "infer.over_middle", "infer.beside"
+OVER_MIDDLE, BESIDE, ACROSS = "infer.over_middle", "infer.beside", "infer.across"
 _ONWARD: tuple[Maneuver, ...] = ("straight", "negotiating_curve", "slowing")
 _ALONG_DEG = (0, 45, 315)
 _APART = (RAMP, ROUNDABOUT, PARKING_LOT)
 """Where vehicles come together without a change of lanes."""
+_CROSSED = (FOUR_LEG, T)
+"""Junctions in which one that turns left crosses the way of those that come against it."""
 
 
 def with_untold_moves(roads: RoadFacts, told: CrashTold, inferred: CrashInferred) -> RoadFacts:
@@ -41,7 +43,7 @@ def with_untold_moves(roads: RoadFacts, told: CrashTold, inferred: CrashInferred
         return roads
     if any(v.maneuver not in _ONWARD for v in pair):
         return roads
-    mover = _mover(crash, first, pair)
+    mover = _turner(roads, first, pair) or _mover(crash, first, pair)
     maneuver, by = _move(roads, first, mover, next(v for v in pair if v is not mover))
     if maneuver is None:
         return roads
@@ -58,6 +60,15 @@ def _ways_told(told: CrashTold, one: VehicleFacts, other: VehicleFacts) -> bool:
     """Whether the text tells the way of both, or of one against the other."""
     relations = ((v.id, met) for v in (one, other) for _, _, met, _ in told.motions[v.id].relations)
     return (one.heading_stated and other.heading_stated) or any({v, met} == {one.id, other.id} for v, met in relations)
+
+
+def _turner(roads: RoadFacts, first: ContactFacts, pair: list[VehicleFacts]) -> VehicleFacts | None:
+    """The one of two that come against each other whose right flank is met in a junction by the front of the other one:
+    it turned left across the other one's way, which shows that flank to it (24 of 26 such reports, CISS)."""
+    sides = {first.striker: first.striker_area, first.struck: first.struck_area}
+    if roads.junction.kind not in _CROSSED or sorted(sides.values()) != ["front", "right"]:
+        return None
+    return next(v for v in pair if sides[v.id] == "right")
 
 
 def _mover(crash: CrashFacts, first: ContactFacts, pair: list[VehicleFacts]) -> VehicleFacts:
@@ -81,6 +92,8 @@ def _move(
     turned = course.lost_control or course.steers == "left"  # any side may come to the fore
     if against(mover.heading, other.heading) and kind == "none" and (turned or {own, theirs} <= {"front", "left"}):
         return "crossing_centerline", OVER_MIDDLE
+    if against(mover.heading, other.heading) and kind in _CROSSED and (own, theirs) == ("right", "front"):
+        return "turn_left", ACROSS
     if between(mover.heading, other.heading) in _ALONG_DEG and kind not in _APART and not _same_lane(mover, other):
         if (own, theirs) == ("right", "left") and not _lies(mover, other, 1):
             return "lane_change_right", BESIDE

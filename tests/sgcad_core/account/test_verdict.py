@@ -15,6 +15,7 @@ from sgcad_core.account.unread_text import _deeds as missed_deeds
 from sgcad_core.account.verdict import (
     contradictions,
     guesses,
+    implied_swings,
     odd_driving,
     places,
     sentence_of,
@@ -22,6 +23,7 @@ from sgcad_core.account.verdict import (
     verdict_of,
 )
 from sgcad_core.case.records import ActorInfo, Trajectory
+from sgcad_core.planner.lines.turning import WIDE
 from sgcad_core.reading.reading import read
 from tests.sgcad_core.planner.crash_scenes import network
 
@@ -247,3 +249,13 @@ def test_lanes_that_are_known_from_another_sentence_are_not_unread(told, unread)
     kept = tuple(fact for fact in one.reading.facts if fact.start is None or fact.start < text.index(told))
     one.reading = replace(one.reading, facts=kept)
     assert any(item.field == "text.lane" for item in unread_clauses(one)) == unread
+
+
+def test_a_turn_that_must_swing_wide_is_an_assumption_with_its_reason():
+    notes = [
+        Note(kind="plan", subject="V1", text=f"V1 {WIDE}"),
+        Note(kind="plan", subject="V2", text="V2 leaves its lane"),
+    ]
+    (found,) = implied_swings(notes)
+    assert (found.kind, found.field) == ("assumed", "vehicles.V1.line")
+    assert "no line within its lanes" in found.reason

@@ -15,6 +15,7 @@ from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner import Plan, plan
 from sgcad_core.planner.encounter.maneuver_choices import HEAD_ON, PARKED_THERE, UNTOLD
 from sgcad_core.planner.lines.departures import side_of
+from sgcad_core.planner.lines.turning import WIDE
 from sgcad_core.records.specs import Actor, BehaviorSpec, Beside, Contact, RoadLayout
 from sgcad_core.roads.lane_graph import LaneGraph
 from sgcad_core.roads.layout import road_spec
@@ -112,3 +113,28 @@ def test_a_flank_that_passes_one_that_stands_brushes_it_along_its_flank(way: str
     assert abs(math.remainder(float(one) - math.pi / 2, math.pi)) < 0.01
     assert abs(math.remainder(float(two) - float(one), math.pi)) < math.radians(16)
     assert not [note for note in made.notes if "askew" in note or "swerves" in note]
+
+
+@pytest.mark.parametrize(("lanes", "lane"), [(2, 2), (3, 3)])
+def test_a_right_turn_that_meets_oncoming_fronts_swings_wide_and_stays_in_its_lane_until_it_turns(lanes, lane):
+    spec = road_spec(RoadLayout(legs=(leg("E", lanes), leg("W", lanes), leg("N", 1))))
+    graph = parse_net(compile_network(plain_xml(spec), spec).net_xml or "")
+    made = _made(
+        graph, {"id": "V1", "road": "N", "lane": 1, "maneuver": "turn_right", "exit_road": "W"},
+        {"id": "V2", "road": "W", "lane": lane, "exit_road": "E"}, "front", "front",
+    )  # fmt: skip
+    assert made.realised
+    assert made.oddity < ODD_FROM
+    assert f"V1 {WIDE}" in made.notes
+    car = next(t for t in made.trajectories if t.actor == "V1").pose
+    still = np.abs(car[:, 2] - car[0, 2]) < math.radians(3.0)
+    assert (np.abs(car[still, 0] - car[0, 0]) < LANE_M / 2).all(), "it leaves its lane before it turns"
+
+
+def test_a_right_turn_that_meets_a_flank_in_its_lanes_swings_no_wider():
+    made = _made(
+        network("four_leg"), {"id": "V1", "road": "N", "maneuver": "turn_right", "exit_road": "W"},
+        {"id": "V2", "road": "E", "exit_road": "W"}, "left", "front",
+    )  # fmt: skip
+    assert made.realised
+    assert not any(WIDE in note for note in made.notes)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from sgcad_core.reading.inference.untold_moves import BESIDE, OVER_MIDDLE
+from sgcad_core.reading.inference.untold_moves import ACROSS, BESIDE, OVER_MIDDLE
 from sgcad_core.reading.reading import read
 
 ONCOMING = "V1 was traveling south on a two-lane undivided road. V2 was traveling north on the same road. "
@@ -45,6 +45,17 @@ def test_of_two_that_come_against_each_other_one_is_over_the_middle(contact: str
 )
 def test_where_more_may_have_happened_nobody_is_given_a_move(text: str) -> None:
     assert {maneuver for maneuver, _ in _maneuvers(text).values()} == {"straight"}
+
+
+@pytest.mark.parametrize("turner", ["V1", "V2"])
+@pytest.mark.parametrize("verb", ["The front of {other} contacted the right side of {turner}.",
+                                  "The right side of {turner} contacted the front of {other}."])  # fmt: skip
+def test_of_two_that_meet_in_a_junction_the_one_that_shows_its_right_flank_turns_left(turner: str, verb: str) -> None:
+    other = {"V1": "V2", "V2": "V1"}[turner]
+    text = ONCOMING + "Both were approaching a four-leg intersection. " + verb.format(turner=turner, other=other)
+    assert _maneuvers(text) == {turner: ("turn_left", False), other: ("straight", False)}
+    fact = next(f for f in read(text).facts if f.field == f"vehicles.{turner}.maneuver")
+    assert (fact.status, fact.rule) == ("inferred", ACROSS)
 
 
 def test_a_told_crossing_stays_with_the_one_of_whom_it_is_told() -> None:
