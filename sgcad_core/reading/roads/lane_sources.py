@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -46,6 +46,21 @@ def derived_sources(facts: LaneFacts, name: str, basis: str) -> Mapping[str, Sou
     """The places with that of a fact that follows from another one."""
     source = facts.where.get(basis)
     return {**facts.where, **({name: source} if source else {})}
+
+
+def with_center_lane_placed(roads: Sequence[LaneFacts]) -> list[LaneFacts]:
+    """The lanes of all roads, where a center turn lane that was read of a road of two lanes at most is one of the only
+    other road of an odd number of three or more: the first has no room for it."""
+    found = list(roads)
+    narrow = [n for n, one in enumerate(found) if one.center_turn_lane and one.total in (1, 2)]
+    wide = [n for n, one in enumerate(found) if (one.total or 0) >= 3 and (one.total or 0) % 2]
+    if len(narrow) == len(wide) == 1:
+        (one,), (other,), name = narrow, wide, "center_turn_lane"
+        where = dict(found[one].where)
+        source = {name: where.pop(name)} if name in where else {}
+        found[other] = replace(found[other], center_turn_lane=True, where={**found[other].where, **source})
+        found[one] = replace(found[one], center_turn_lane=False, where=where)
+    return found
 
 
 def _cue(name: str, value: object, number: int, said: str) -> Source:

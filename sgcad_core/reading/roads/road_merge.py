@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from sgcad_core.kinds import ALLEY, JOINING
-from sgcad_core.reading.roads.lane_sources import derived_sources, with_sources_of_both
+from sgcad_core.reading.roads.lane_sources import derived_sources, with_center_lane_placed, with_sources_of_both
 from sgcad_core.reading.roads.lanes import LaneFacts
 from sgcad_core.reading.roads.road_mentions import Kind, RoadMention, axis_of
 from sgcad_core.reading.text.compass import turned
@@ -89,6 +89,8 @@ def merge_roads(mentions: Iterable[RoadMention], headings: Mapping[str, Compass]
     for road in roads:
         if road.lanes.one_way and road.lanes.one_lane and not (lane_count(road.lanes) or road.lanes.toward):
             road.lanes = replace(road.lanes, total=1, where=derived_sources(road.lanes, "total", "one_way"))
+    for road, lanes in zip(roads, with_center_lane_placed([road.lanes for road in roads]), strict=True):
+        road.lanes = lanes
     return roads
 
 

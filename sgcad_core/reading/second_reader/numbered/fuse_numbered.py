@@ -182,8 +182,8 @@ def _lanes(crash: CrashFacts, roads: RoadFacts, of: str, value: str) -> Changed 
         return None
     axis, count, both = axis_of(v.heading), int(value.lstrip("ownbth")), value.startswith("both")
     road = next((one for one in roads.streets if one.axis == axis), None)
-    if road is None:
-        return None
+    if road is None or (not both and road.lanes.toward.get(v.heading) not in (None, count)):
+        return None  # the text counts the lanes of that direction
     lanes = _counted(road.lanes, v.heading, count, both)
     new = _with_lanes(roads, road, lanes)
     if not same(value, lanes_of(v, layout_of_facts(new))):

@@ -340,6 +340,16 @@ def test_a_center_turn_lane_that_is_turned_into_belongs_to_the_other_road() -> N
     assert {leg.bearing: leg.center_turn_lane for leg in found.legs} == {"E": True, "W": True, "S": False}
 
 
+@pytest.mark.parametrize(("cross", "wide"), [("five", True), ("four", False)])
+def test_a_center_turn_lane_lies_in_the_wide_road_and_not_in_one_of_two_lanes(cross: str, wide: bool) -> None:
+    found = read("V1 was traveling south on a two-lane road, exiting a parking lot to cross an intersection. V2 was "
+                 f"traveling west on a {cross}-lane road. The front of V2 contacted the left side of V1. V1 then came "
+                 "to rest in the center turn lane.").roads  # fmt: skip
+    told = {road.lanes.total: road.lanes.center_turn_lane for road in found.roads}
+    assert told[2] is not wide
+    assert {"five": told.get(5), "four": not told.get(4)}[cross]
+
+
 @pytest.mark.parametrize("text", [
     "There were two lanes and a left turn lane in each direction.",
     "V1 was northbound on a road. There were a lane for left turns in each direction and two northbound lanes.",

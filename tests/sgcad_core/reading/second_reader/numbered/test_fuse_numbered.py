@@ -72,6 +72,13 @@ def test_lanes_show_in_the_layout_of_the_road() -> None:
         assert lanes_of(found.crash.vehicles[0], layout_of_facts(found.roads)) == want
 
 
+def test_the_lanes_that_the_text_counts_for_a_direction_stand() -> None:
+    told = PLAIN.replace("traveling east on a road", "traveling east in lane 1 of 2")
+    assert read(told).roads.roads[0].lanes.toward == {"E": 2}
+    assert fused(told, lanes_V1="own4").roads.roads[0].lanes.toward == {"E": 2}
+    assert fused(PLAIN, lanes_V1="own4").roads.roads[0].lanes.toward == {"E": 4}
+
+
 def test_of_two_vehicles_on_a_road_the_surer_one_has_its_lanes() -> None:
     guesses = {"lanes.V1": Guess(value="own3", p=0.7), "lanes.V2": Guess(value="own2", p=0.9)}
     found = fused_with_guesses(read(PLAIN), guesses)
