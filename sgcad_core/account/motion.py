@@ -29,10 +29,8 @@ from sgcad_core.roads.lane_positions import position
 _HEADING_RAD = math.radians(45.0 + 22.5)
 """A heading is right within an eighth of the circle beside the compass word's own eighth, as the scorers have it."""
 _LIES = {"wheels": "wheels", "roof": "roof", "left": "left side", "right": "right side"}
-_STANDS_MPS = 1.0
-"""Below it a vehicle stands, as reports have it."""
-_AWAY_M = 6.0
-"""Distance from its first contact beyond which one that still drives is seen to leave."""
+_STANDS_MPS, _AWAY_M = 1.0, 6.0
+"""Speed below which a vehicle stands; distance from its first contact beyond which one that still drives leaves."""
 _SPIN_DEG = 60.0
 """Tolerance of a stated angle of spin: reports give quarter turns."""
 
@@ -262,15 +260,18 @@ def _to_lane(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
 
 
 def _joins(end: str) -> Judge:
-    """A comparison of the kind of road that a vehicle comes from or enters; `end`: as the behavior calls it."""
+    """A comparison of the kind of road that a vehicle comes from or enters; `end`: as the behavior calls it. One that
+    is met before it turns need only have such a road to turn into."""
 
     def judged(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
         wanted = {DRIVEWAY: DRIVEWAY, ALLEY: ALLEY, PARKING_LOT: DRIVEWAY, RAMP: RAMP}.get(str(value))
         actors = made.scenario.behavior.actors if made.scenario.behavior else ()
-        spec, name = made.network.spec, next((getattr(a, end) for a in actors if a.id == who), None)
-        if wanted is None or spec is None or name is None:
+        spec, actor = made.network.spec, next((a for a in actors if a.id == who and getattr(a, end)), None)
+        if wanted is None or spec is None or actor is None:
             return None
-        kind = next((ALLEY if road.alley else road.kind for road in spec.roads if road.id == name), "road")
+        kinds = {road.id: ALLEY if road.alley else road.kind for road in spec.roads}
+        onward = end == "exit_road" and actor.maneuver in ("straight", "slowing", "negotiating_curve", "stopped")
+        kind = wanted if onward and wanted in kinds.values() else kinds.get(getattr(actor, end), "road")
         lot = made.reading.roads.junction.kind == PARKING_LOT or (str(value) == RAMP and _in_gore(made, who))
         return Comparison(kind == wanted or lot, kind, f"that road is drawn as a {kind}")
 

@@ -64,6 +64,25 @@ def test_a_vehicle_of_no_known_kind_lacks_its_kind(made, said, lacks):
     assert (found is not None and found.value == said) is lacks
 
 
+# ------------------------------------------------------------------ where it turns into
+@pytest.mark.parametrize(("maneuver", "drawn", "has"), [
+    ("slowing", True, True), ("turn_left", True, False), ("slowing", False, False),
+])  # fmt: skip
+def test_one_that_is_met_before_it_turns_has_a_driveway_to_turn_into(made, maneuver, drawn, has):
+    spec, behavior = made.network.spec, made.scenario.behavior
+    first = behavior.actors[0].model_copy(update={"maneuver": maneuver})
+    aside = next(road.id for road in spec.roads if road.id not in (first.road, first.exit_road))
+    roads = tuple(r.model_copy(update={"kind": "driveway"}) if drawn and r.id == aside else r for r in spec.roads)
+    case = replace(
+        made, network=made.network.model_copy(update={"spec": spec.model_copy(update={"roads": roads})}),
+        scenario=made.scenario.model_copy(
+            update={"behavior": behavior.model_copy(update={"actors": (first, *behavior.actors[1:])})}
+        ),
+    )  # fmt: skip
+    target = fact(f"vehicles.{first.id}.target", "driveway")
+    assert judged(case, first.id, "target", target).has is has
+
+
 # ------------------------------------------------------------------ the whole
 def test_a_bundled_report_is_whole_and_its_counts_agree(made):
     told = account_of(made, made.reading.facts).summary()
