@@ -130,7 +130,8 @@ def _read(
     if segment.role != "rest":
         read_lane(motion, before_hit, from_median)
         read_straddle(motion, before_hit, from_median)
-        read_lane_change(motion, before_hit, from_median)
+        if not after:
+            read_lane_change(motion, before_hit, from_median)
         read_origin_and_target(motion, before_hit, after)
 
 
