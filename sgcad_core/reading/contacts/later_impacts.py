@@ -199,8 +199,11 @@ def _undone(text: str, m: re.Match[str]) -> bool:
 
 
 def _hit(segment: Segment, m: re.Match[str], thing: re.Match[str], vehicle: str) -> ImpactRead:
-    own = rule("contact_words.with_its").search(segment.text[m.end() : m.end() + 60])
+    behind = segment.text[m.end() : m.end() + 60]
+    own = rule("contact_words.with_its").search(behind)
     area = side_met(area_of(own["area"])) if own else None
+    if rule("contact_words.wheel_end").search(behind):
+        area = "front"  # a wheel is no flank
     impact = ImpactTold(vehicle, _word(thing["thing"]), area)
     at = segment.at + thing.start("thing") - _SLACK
     return ImpactRead(impact, Source(segment.number, m[0], "course_impacts.object"), at)

@@ -114,6 +114,11 @@ def test_what_is_driven_over_behind_the_first_contact_is_struck(what: str) -> No
     assert impacts(text) == [("V2", what.split()[-1])]
 
 
+def test_a_front_wheel_that_strikes_something_is_no_flank() -> None:
+    text = f"{HIT} Vehicle #2 then struck a curb with its left front wheel."
+    assert [i.actor_area for i in read(INTRO + text).crash.impacts] == ["front"]
+
+
 def test_the_ground_is_no_thing_that_is_struck() -> None:
     assert impacts(f"{HIT} Vehicle #2 then struck the ground.") == []
 
