@@ -260,8 +260,7 @@ def _to_lane(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
 
 
 def _joins(end: str) -> Judge:
-    """A comparison of the kind of road that a vehicle comes from or enters; `end`: as the behavior calls it. One that
-    is met before it turns need only have such a road to turn into."""
+    """A comparison of the kind of road that a vehicle comes from or enters (`end`), or might enter if met before."""
 
     def judged(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
         wanted = {DRIVEWAY: DRIVEWAY, ALLEY: ALLEY, PARKING_LOT: DRIVEWAY, RAMP: RAMP}.get(str(value))
