@@ -14,7 +14,7 @@ from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import ObservedContact, Trajectory
 from sgcad_core.handover.avoidance import avoidance
 from sgcad_core.handover.script import Script, staging_for
-from sgcad_core.handover.severity import severity
+from sgcad_core.handover.severity import executed_severity
 
 _STANDS_M = 1e-4
 """An actor that moves (m) or turns (rad) less in a sample stands."""
@@ -26,7 +26,7 @@ def contact_figures(script: Script, contact: ObservedContact | None) -> dict[str
     """Delta-v, energy, risk, and the last moments to brake and to move aside; empty without a contact."""
     if contact is None:
         return {}
-    hard = severity(contact, script.trajectories, {a.id: a for a in script.actors})
+    hard = executed_severity(contact, script.trajectories, {a.id: a for a in script.actors})
     risks = [s.risk for s in (hard.first, hard.second) if s.risk is not None]
     figures: dict[str, Any] = {
         "delta_v_mps": {s.actor: round(s.delta_v_mps, 3) for s in (hard.first, hard.second)},
@@ -52,7 +52,7 @@ def impact_summary(script: Script, contact: ObservedContact | None) -> dict[str,
     """
     if contact is None:
         return None
-    hard = severity(contact, script.trajectories, {a.id: a for a in script.actors})
+    hard = executed_severity(contact, script.trajectories, {a.id: a for a in script.actors})
     track = {t.actor: t for t in script.trajectories}
     return {
         "t_s": contact.t_s, "closing_mps": round(hard.closing_mps, 3), "energy_j": round(hard.energy_j, 1),

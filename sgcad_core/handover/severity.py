@@ -1,13 +1,15 @@
 """Severity of a contact: closing speed, change of velocity of both, energy, and risk of death.
 
-One impulse at the first touch, planar with restitution and friction (`sgcad_core.planner.aftermath.impact`); masses are
-typical of kind and length. The same for the script and for a drive, so that they can be compared. SI units.
+`severity`: one impulse at the first touch, planar with restitution and friction
+(`sgcad_core.planner.aftermath.impact`); the same for the script and for a drive, which ends at its contact, so that
+they can be compared. `executed_severity`: of the motion through the contact, as it was executed. Masses are typical of
+kind and length. SI units.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from sgcad_core.case.driver_io import STEP_S
 from sgcad_core.case.records import ActorInfo, ObservedContact, Record, Trajectory
@@ -19,6 +21,8 @@ from sgcad_core.records.specs import ActorKind
 from sgcad_core.units import MPS_PER_MPH
 
 MPH_PER_MPS = 1 / MPS_PER_MPH
+_PULSE = 2
+"""Samples from the first overlap until a crush is over: 0.1 s, as at a pole (`sgcad_core.planner.aftermath.crush`)."""
 
 
 class Struck(Record):
@@ -57,12 +61,37 @@ class Severity(Record):
 
 def severity(contact: ObservedContact, trajectories: Sequence[Trajectory], infos: Mapping[str, ActorInfo]) -> Severity:
     """The figures of a first contact, from the motion of both up to the sample before it."""
+    return _found(contact, trajectories, infos, lambda pair: exchanged(pair[0], pair[1]))
+
+
+def executed_severity(
+    contact: ObservedContact, trajectories: Sequence[Trajectory], infos: Mapping[str, ActorInfo]
+) -> Severity:
+    """The figures of a first contact, from the motion of both before it and behind its pulse."""
     track = {t.actor: t for t in trajectories}
-    pair = [_body(track[name], infos[name], contact.t_s) for name in (contact.actor, contact.other)]
+
+    def changed(pair: Sequence[Body]) -> list[tuple[float, float]]:
+        found = []
+        for one, name in zip(pair, (contact.actor, contact.other), strict=True):
+            vx, vy = one.vx, one.vy
+            if not infos[name].record.thing:
+                one.vx, one.vy, one.spin = _velocity(track[name], _sample(track[name], contact.t_s) + _PULSE)
+            found.append((one.vx - vx, one.vy - vy))
+        return found
+
+    return _found(contact, trajectories, infos, changed)
+
+
+def _found(
+    contact: ObservedContact, trajectories: Sequence[Trajectory], infos: Mapping[str, ActorInfo],
+    change: Callable[[Sequence[Body]], Sequence[tuple[float, float]]],
+) -> Severity:  # fmt: skip
+    """The figures of a contact; `change` gives both bodies their motion after it, and the changes of velocity."""
+    track, names = {t.actor: t for t in trajectories}, (contact.actor, contact.other)
+    pair = [_body(track[name], infos[name], contact.t_s) for name in names]
     before, energy = [(b.vx, b.vy) for b in pair], sum(b.energy for b in pair)
-    changes = exchanged(pair[0], pair[1])
+    changes = change(pair)
     closing = math.hypot(before[0][0] - before[1][0], before[0][1] - before[1][1])
-    names = contact.actor, contact.other
     struck = [_struck(infos[n], b, v, c, closing) for n, b, v, c in zip(names, pair, before, changes, strict=True)]
     return Severity(
         closing_mps=closing, energy_j=max(energy - sum(b.energy for b in pair), 0.0), first=struck[0], second=struck[1]
@@ -82,7 +111,7 @@ def exchanged(
 
 def _body(track: Trajectory, info: ActorInfo, t_s: float) -> Body:
     """A box at the contact with the velocity that it had until the sample before."""
-    k = min(max(round(t_s / STEP_S), 0), len(track.t_s) - 1)
+    k = _sample(track, t_s)
     a, b = max(k - 2, 0), max(k - 1, min(1, len(track.t_s) - 1))
     size: Size = (info.length_m, info.width_m)
     mass = None if info.record.thing else mass_kg(info.type, info.length_m)
@@ -92,6 +121,20 @@ def _body(track: Trajectory, info: ActorInfo, t_s: float) -> Body:
         made.vx, made.vy = float(track.x_m[b] - track.x_m[a]) / step, float(track.y_m[b] - track.y_m[a]) / step
         made.spin = float(track.heading_rad[b] - track.heading_rad[a]) / step
     return made
+
+
+def _sample(track: Trajectory, t_s: float) -> int:
+    return min(max(round(t_s / STEP_S), 0), len(track.t_s) - 1)
+
+
+def _velocity(track: Trajectory, k: int) -> tuple[float, float, float]:
+    """The velocity and the spin from a sample to the next one."""
+    k = min(k, len(track.t_s) - 2)
+    if k < 0:
+        return 0.0, 0.0, 0.0
+    dx, dy = track.x_m[k + 1] - track.x_m[k], track.y_m[k + 1] - track.y_m[k]
+    turned = math.remainder(float(track.heading_rad[k + 1] - track.heading_rad[k]), 2 * math.pi)
+    return float(dx) / STEP_S, float(dy) / STEP_S, turned / STEP_S
 
 
 def _struck(
