@@ -15,7 +15,8 @@ from sgcad_core.geometry.plane import Floats
 from sgcad_core.kinds import actor_kind, is_vehicle_id
 from sgcad_core.metrics.labels.course_label_match import BRAKES_MPS, STEERS_M
 from sgcad_core.metrics.labels.observed_crash import VehicleMotion
-from sgcad_core.reading.contacts.contact_records import ContactFacts
+from sgcad_core.metrics.rest_error import AGAINST_M, against_errors
+from sgcad_core.reading.contacts.contact_records import GROUND, ContactFacts
 from sgcad_core.reading.language import of_role
 from sgcad_core.records.acts import steering_of
 from sgcad_core.records.course import ImpactTold
@@ -86,6 +87,7 @@ def contact_items(made: ExecutedCase) -> Iterator[Item]:
         last = max(last, times[0]) if times and not crash.unnumbered else last
     for number, impact in enumerate(crash.impacts):
         yield from _impact(made, number, impact)
+    yield from _resting(made)
 
 
 def _pair(a: str, b: str) -> frozenset[str]:
@@ -170,6 +172,26 @@ def _impact(made: ExecutedCase, number: int, impact: ImpactTold) -> Iterator[Ite
             side = next((area for area in seen if area == told), seen[0] if seen else None)
             field, words = f"impacts.{number}.{name}", f"{text}: {told} of {who}"
             yield made.item(side == told, field, told, side, why=f"the {side} touches" if side else why, text=words)
+
+
+def _resting(made: ExecutedCase) -> Iterator[Item]:
+    """One item for each vehicle that is told to rest against a thing, or at it; none for what is driven over."""
+    words = {other.id: _last_word(other.word) for other in made.reading.crash.others}
+    for who, course in made.reading.crash.courses.items():
+        field, told = f"vehicles.{who}.rest.against", course.rest.against
+        if told is None or who not in made.tracks or _last_word(told) in GROUND:
+            continue
+        met = {b if a == who else a for _, a, b in made.crash.touches if who in (a, b)}
+        named = [x for x in met if x[0] == _letter(told) and words.get(x, _last_word(told)) == _last_word(told)]
+        end, size = made.tracks[who].pose[-1:], made.sizes[who]
+        off = [float(against_errors(end, size, made.tracks[x].pose[-1], made.sizes[x])[0]) for x in named]
+        beyond = min(off, default=0.0)
+        why = f"it comes to rest {beyond + AGAINST_M:.1f} m from it" if named else "it touches none"
+        yield made.item(bool(named) and beyond <= 0.0, field, told, why=why, text=f"{who} rests at the {told}")
+
+
+def _last_word(thing: str) -> str:
+    return thing.replace("-", " ").split()[-1]
 
 
 def _letter(word: str) -> str:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sgcad_core.geometry.plane import Floats, wrap_angle
+from sgcad_core.geometry.plane import Floats, Size, box_gaps, wrap_angle
 from sgcad_core.metrics.told_lanes import ToldLane
 from sgcad_core.records.course import AT_IMPACT_M, Attitude, Hand, RestLane, RestTold
 from sgcad_core.records.specs import Compass
@@ -39,6 +39,8 @@ _NEAR_SHARE, _NEAR_M = 0.3, 1.0
 """A distance is right within this share of it, or so many metres."""
 _TURN_SHARE, _TURN_RAD = 0.25, math.radians(30.0)
 """A rotation is right within this share of it, or this angle."""
+AGAINST_M = 1.5
+"""A vehicle rests against a thing, or at it, within this gap: it rolls back a little off what it struck."""
 _ACROSS, _CORNER_RAD = math.cos(math.radians(30.0)), math.radians(45.0)
 """A side lies beside a road that runs across it within 30 degrees; of other roads it is a corner of their junction, of
 which each has a quarter."""
@@ -106,6 +108,13 @@ def whirls(ways: Floats) -> Floats:
         turned = np.abs(ways[lag:, :, 2] - ways[:-lag, :, 2])
         most = np.maximum(most, np.where(gone[lag:] - gone[:-lag] <= _SPOT_M, turned, 0.0).max(axis=0))
     return most
+
+
+def against_errors(poses: Floats, size: Size, thing: Floats, thing_size: Size) -> Floats:
+    """(n,) metres beyond the allowed gap between boxes at (n, 3) poses and a thing at a (3,) pose; 0 or less is
+    right."""
+    there = np.repeat(thing[None], len(poses), axis=0)
+    return box_gaps(poses, size, there, thing_size) - AGAINST_M
 
 
 def near_m(distance_m: float) -> float:

@@ -28,6 +28,7 @@ from sgcad_core.reading.contacts.crash_course import before_near_miss, courses_t
 from sgcad_core.reading.contacts.crash_roles import role_facts
 from sgcad_core.reading.contacts.later_impacts import later_impacts, things_struck, with_resting_contacts
 from sgcad_core.reading.contacts.near_crash import before_evasion, drifts_to, near_miss, near_misses, tells_hit
+from sgcad_core.reading.contacts.rest_words import at_struck
 from sgcad_core.reading.contacts.road_departure import hand_of_thing, lies_in_road
 from sgcad_core.reading.contacts.untouched_events import untouched_event
 from sgcad_core.reading.crash_facts import CrashFacts, crash_of, with_turned_signals
@@ -194,6 +195,8 @@ def events(
     course = before_near_miss(course, of_thing=bool(things)) if near else course
     pairs = {frozenset((b.actor, b.other)) for b in struck if b.other in roster.ids}
     later = () if near else later_impacts(named.statements, cues, roster, struck)
+    hit = [*((b.actor, b.other) for b in struck), *((read.impact.actor, read.impact.other) for read in later)]
+    course = replace(course, courses=at_struck(course.courses, course.sources, hit))
     impacts = () if near else with_resting_contacts(later, course, len(pairs))
     walks = {b.other: walk_of(b.other, named.statements) for b in hits if b.other not in roster.ids}
     missed = frozenset(frozenset((b.actor, b.other)) for b in near_misses(named.statements, roster))

@@ -228,8 +228,10 @@ def _read_rest(one: _CourseReader, segment: Segment, text: str) -> None:
         one.add_rest("distance_m", way.meters, Source(segment.number, way.words, way.rule))
     if clause is not None and not rule("course_rest.unknown").search(clause):
         _read_facing(one, segment, clause)
-        if m := rule("course_rest.against").search(clause):
-            one.add_rest("against", m["thing"], Source(segment.number, m[0], "course_rest.against"))
+        for prop in (rule("course_rest.against"), rule("course_rest.at_thing")):
+            if m := prop.search(clause):
+                one.add_rest("against", m["thing"], Source(segment.number, m[0], prop.id))
+                break
         one.sources.setdefault("rest.at", Source(segment.number, clause[:20], "course_rest.rest"))
         if "rest.distance_m" not in one.sources and (m := rule("course_rest.at_impact").search(clause)):
             one.add_rest("distance_m", AT_IMPACT_M, Source(segment.number, m[0], "course_rest.at_impact"))

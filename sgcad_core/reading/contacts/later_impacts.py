@@ -13,6 +13,7 @@ from dataclasses import replace
 from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.contacts.contact_records import GROUND, ContactMention
 from sgcad_core.reading.contacts.crash_course import UNREAD, CoursesRead, ImpactRead
+from sgcad_core.reading.contacts.rest_words import touched_at_rest
 from sgcad_core.reading.inference.inference_state import end_of, side_met
 from sgcad_core.reading.language import of_role, rule
 from sgcad_core.reading.motion.clauses import Segment, Statement
@@ -44,6 +45,7 @@ def later_impacts(
         [read for segment in segments for read in _things(segment)],
         [read for b in contact_mentions[not first :] if (read := _of_mention(b, roster))],
     )
+    things = [x for x in things if not touched_at_rest(places.get(x.source.number, ""), _place(x, places)[1])]
     again = list(_again(statements, roster, contact_mentions, first)) if first else []
     people = list(_people(roster, contact_mentions, first is None))
     found = sorted([*_once(things), *again, *people], key=lambda read: _place(read, places))
@@ -137,10 +139,10 @@ def with_resting_contacts(impacts: Sequence[ImpactRead], read: CoursesRead, last
     struck = {(one.impact.actor, _word(one.impact.other)) for one in impacts}
     found = list(impacts)
     for vehicle, course in read.courses.items():
-        prop = course.rest.against
-        if prop and prop not in GROUND and (vehicle, _word(prop)) not in struck:
+        prop, source = course.rest.against, read.sources.get(f"{vehicle} rest.against")
+        if prop and source and prop not in GROUND and (vehicle, _word(prop)) not in struck:
             impact = ImpactTold(vehicle, _word(prop), after=max(last, 1))
-            found.append(ImpactRead(impact, read.sources[f"{vehicle} rest.against"]))
+            found.append(ImpactRead(impact, source))
     return tuple(found)
 
 

@@ -6,14 +6,16 @@ Reads one segment or clause; knows no road. Lanes are counted as before the cont
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import NamedTuple, cast
 
 from sgcad_core.reading.language import Rule, of_role, rule
 from sgcad_core.reading.motion.heading_lane_cues import read_lane
-from sgcad_core.reading.motion.motion_record import VehicleMotion
+from sgcad_core.reading.motion.motion_record import Source, VehicleMotion
 from sgcad_core.reading.text.compass import WORDS, turned
 from sgcad_core.reading.text.normalise import number
-from sgcad_core.records.course import Hand, RestLane, Spin
+from sgcad_core.records.course import CourseTold, Hand, RestLane, Spin
 from sgcad_core.records.specs import Compass
 from sgcad_core.units import METERS
 
@@ -150,3 +152,31 @@ def side_named(text: str) -> Compass | Hand | None:
         if m["bound"] and word in WORDS:  # a northbound shoulder lies east of its road
             found = turned(WORDS[word], 90)
     return found
+
+
+def touched_at_rest(text: str, at: int) -> bool:
+    """Whether the words at a place of a sentence tell where a vehicle rests, at the thing that was struck before: they
+    tell no further contact with it."""
+    rest = rule("course_rest.rest").search(text)
+    props = (rule("course_rest.against"), rule("course_rest.at_thing")) if rest else ()
+    told = (m for prop in props for m in prop.finditer(text, rest.end() if rest else 0))
+    return any(m.start() <= at < m.end() and rule("course_rest.same_thing").search(m[0]) for m in told)
+
+
+def at_struck(
+    courses: Mapping[str, CourseTold], sources: Mapping[str, Source], struck: Iterable[tuple[str, str]]
+) -> dict[str, CourseTold]:
+    """The courses without rests at things that their vehicles did not strike: a sign, or a barrier along the road, then
+    only says where that was. `struck`: pairs of a vehicle and the words for what it struck."""
+    met = {(vehicle, _last(thing)) for vehicle, thing in struck}
+    return {
+        vehicle: replace(course, rest=replace(course.rest, against=None))
+        if (prop := course.rest.against) and (vehicle, _last(prop)) not in met
+        and sources[f"{vehicle} rest.against"].rule == "course_rest.at_thing" else course
+        for vehicle, course in courses.items()
+    }  # fmt: skip
+
+
+def _last(thing: str) -> str:
+    """ "light-pole" -> "pole"."""
+    return thing.replace("-", " ").split()[-1]

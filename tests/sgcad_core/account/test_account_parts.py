@@ -18,7 +18,7 @@ from sgcad_core.config import load
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.text.normalise import split_sentences
 from sgcad_core.reading.text.traced_text import TracedText
-from sgcad_core.records.course import CourseTold, Move
+from sgcad_core.records.course import CourseTold, Move, RestTold
 from sgcad_core.records.facts import Fact
 from sgcad_core.roads.lane_total_readings import may_be_of_one_half
 from sgcad_core.settings import ROOT
@@ -348,3 +348,18 @@ def test_a_told_evasion_that_is_hardly_driven_lacks(made, told, speed, left_m, m
     case.__dict__["tracks"] = {"V1": moved}
     (item,) = _evasion_items(case, float(track.t_s[-1]))
     assert (item.kind, item.reason) == (("has", "") if missed is None else ("lacks", missed))
+
+
+# ------------------------------------------------------------------ rests at things
+def test_a_rest_at_a_thing_that_nothing_touches_lacks(made):
+    crash = made.reading.crash
+    told = replace(crash, courses={"V1": CourseTold(rest=RestTold(against="light pole"))})
+    other = replace(made, reading=replace(made.reading, crash=told))
+    found = of(contact_items(other), "vehicles.V1.rest.against")
+    assert found is not None
+    assert (found.kind, found.reason) == ("lacks", "it touches none")
+    driven = replace(crash, courses={"V1": CourseTold(rest=RestTold(against="curb"))})
+    assert (
+        of(contact_items(replace(made, reading=replace(made.reading, crash=driven))), "vehicles.V1.rest.against")
+        is None
+    )

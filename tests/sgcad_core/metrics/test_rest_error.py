@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sgcad_core.metrics.rest_error import near_m, rest_errors, whirls
+from sgcad_core.metrics.rest_error import AGAINST_M, against_errors, near_m, rest_errors, whirls
 from sgcad_core.records.course import AT_IMPACT_M, RestTold
 from sgcad_core.roads.lane_positions import Position
 from sgcad_core.roads.surface import RoadSurface, road_surface
@@ -132,3 +132,11 @@ def test_a_whirl_is_a_rotation_within_a_few_metres(way_m, turned_deg, whirls_deg
     assert found[0] <= whirls_deg + 1e-6
     assert found[0] >= 0.9 * whirls_deg or way_m > 3.5
     assert found[1] == 0.0
+
+
+@pytest.mark.parametrize(("gap_m", "right"), [(-0.1, True), (AGAINST_M - 0.05, True), (AGAINST_M + 0.05, False)])
+def test_a_rest_at_a_thing_is_right_within_a_gap_between_both(gap_m: float, right: bool) -> None:
+    car, pole = (4.7, 1.8), (0.4, 0.4)
+    stands = np.array([2.35 + 0.2 + gap_m, 0.3, 1.5])
+    error = against_errors(np.zeros((1, 3)), car, np.array([stands[0], stands[1], 0.0]), pole)
+    assert (error[0] <= 0.0) is np.bool_(right)
