@@ -181,7 +181,7 @@ class _Cast:
         aside = [*knock_aside(scene, cast.early, surface), *drive_over(scene, ended.passed, surface)]
         notes = () if cast.possible or self.behavior.near_crash else tuple(scene.turn_over(self.told))
         notes += tuple(drive_away(scene, self.courses, self.told, self.possible))
-        missed = ended.missed + cast.missed + MISSED * (len(aside) + cast.unmet(scene))
+        missed = ended.missed + cast.missed + MISSED * (len(aside) + cast.unmet(scene) + scene.rolls_short(self.told))
         return WholeCourse(scene, (*cast.notes, *ended.notes, *aside, *notes), cast.oddity, missed)
 
     def unmet(self, scene: Scene) -> int:

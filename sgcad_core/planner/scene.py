@@ -19,7 +19,7 @@ from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
 from sgcad_core.planner.aftermath.hitch import hitched
 from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, body
-from sgcad_core.planner.aftermath.rollover import roll_angles, rolls_over, turned_over
+from sgcad_core.planner.aftermath.rollover import quarters_short, roll_angles, rolls_over, turned_over
 from sgcad_core.planner.aftermath.wreck import Wreck
 from sgcad_core.planner.aftermath.wreck_bodies import Mover, Touch
 from sgcad_core.planner.lines.path import Path
@@ -211,6 +211,17 @@ class Scene:
             if name in told and rolls_over(told[name]) and track.hit is None:
                 track.hit, track.poses = self.contact, turned_over(track.poses, self.contact, told[name])
                 yield f"{name} rolls over and touches nobody"
+
+    def last_fixed(self, name: str) -> Track | None:
+        """What an actor touches last of the things that stay."""
+        met = (t.second if t.first == name else t.first for t in reversed(self.touches) if name in (t.first, t.second))
+        return next((self.tracks[other] for other in met if self.tracks[other].motion.fixed), None)
+
+    def rolls_short(self, told: Courses) -> int:
+        """The number of vehicles whose way to rest is too short for the told quarter turns."""
+        hit = ((name, track, track.hit) for name, track in self.tracks.items() if track.hit is not None)
+        rolls = ((track.poses, at, told[name], self._samples_of(name)) for name, track, at in hit if name in told)
+        return sum(quarters_short(*roll) > 0 for roll in rolls)
 
     def first_contact(self) -> ObservedContact | None:
         """The first overlap of any two actors, as seen in the trajectories."""

@@ -15,7 +15,7 @@ from sgcad_core.kinds import actor_kind
 from sgcad_core.planner.aftermath.rest_candidates import odd_ways
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit
 from sgcad_core.planner.aftermath.second_contact import MISSED
-from sgcad_core.planner.aftermath.struck_objects import Strike, leave_beside, place_thing
+from sgcad_core.planner.aftermath.struck_objects import Strike, leave_beside, on_another_side, place_thing
 from sgcad_core.planner.aftermath.told_order import Pair, ToldOrder, pair_of
 from sgcad_core.planner.encounter.off_center import NARROW_M, SHARES, USUAL
 from sgcad_core.planner.later.later_courses import runs_on, with_run
@@ -205,6 +205,7 @@ class Ending:
         placed = along and self._is_met(strike, surface, ends, on_road=False, as_told=True)
         placed = placed or (beside and self._is_met(strike, surface, ends, on_road=False))
         if placed:
+            yield from self._sides(strike)
             return
         aside = along and told.rest.where in ("off_road", "shoulder", "median")
         if not aside and self._is_met(strike, surface, ends, on_road=True):
@@ -213,6 +214,11 @@ class Ending:
         else:
             leave_beside(self.scene, strike, surface)
             yield f"{strike.by} does not reach {strike.thing.id}, which it strikes as told"
+
+    def _sides(self, strike: Strike) -> Iterator[str]:
+        """A note where a thing is struck with another side than told; what runs along the road has few places."""
+        if not runs_along(strike.thing) and on_another_side(self.scene, strike):
+            yield f"{strike.by} strikes {strike.thing.id} with another side than told ({strike.side})"
 
     def _is_met(
         self,

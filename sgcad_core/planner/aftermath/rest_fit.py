@@ -21,6 +21,7 @@ from sgcad_core.metrics.rest_error import (
     SIDE_RAD,
     SPINS_RAD,
     RestErrors,
+    against_errors,
     in_words,
     near_m,
     near_turn_rad,
@@ -221,7 +222,13 @@ class RestFit:
         if course.rest.distance_m is not None:
             off = np.abs(self._way_m(name, ends) - course.rest.distance_m)
             total += _TOLD * (off > near_m(course.rest.distance_m)) + _eased(off / course.rest.distance_m)
+        total += _missed(len(ends), (self._from_prop(name, course.rest, ends), _WELL_M, _PLACE_SCALE_M))
         return total + (self._unspun(name, course, ends) if course.spin else self._whirled(name, ends))
+
+    def _from_prop(self, name: str, rest: RestTold, ends: Floats) -> Floats | None:
+        """(n,) metres by which last poses are too far from what it struck last, where it is told to rest at it."""
+        prop = self.scene.last_fixed(name) if rest.against else None
+        return None if prop is None else against_errors(ends, self.scene.tracks[name].size, prop.poses[-1], prop.size)
 
     def _way_m(self, name: str, ends: Floats) -> Floats:
         """(n,) metres from the place of a vehicle at the first contact to (n, 3) last poses."""
@@ -266,6 +273,9 @@ class RestFit:
     def _missed(self, name: str, rest: RestTold) -> Iterator[str]:
         errors = self._errors(name, rest, self.scene.tracks[name].poses[-1:])
         yield from (f"{name} {words}" for words in in_words(rest, errors))
+        beyond = self._from_prop(name, rest, self.scene.tracks[name].poses[-1:])
+        if beyond is not None and beyond[0] > 0:
+            yield f"{name} does not come to rest at the {rest.against}"
         if rest.distance_m is not None:
             way = float(self._way_m(name, self.scene.tracks[name].poses[-1:])[0])
             if abs(way - rest.distance_m) > near_m(rest.distance_m):

@@ -100,6 +100,12 @@ def barrel_costs(told: CourseTold, ways: Floats) -> Floats:
     return cost
 
 
+def quarters_short(poses: Floats, hit: int, told: CourseTold, touches: Sequence[int] = ()) -> int:
+    """How many of the told quarter turns the way of a vehicle is too short for; as `roll_angles`."""
+    rolls = abs(float(roll_angles(poses, hit, told, touches)[-1])) if told.roll_quarters else 0.0
+    return (told.roll_quarters or 0) - round(rolls / (math.pi / 2))
+
+
 def turned_over(poses: Floats, at: int, told: CourseTold) -> Floats:
     """(n, 3) poses of a vehicle that rolls over from sample `at` on, turned as it is told to lie while it moves on."""
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(poses[at:, :2], axis=0).T))))

@@ -43,8 +43,9 @@ _GRAZE_M = 0.02
 """Overlap of a flank with what it scrapes: deeper, the corner ahead of it would meet the thing head on."""
 _PASSED = 0.6
 """Share of the way of a sample by which the corner of a flank has passed what the flank scrapes."""
-GLANCE_M = 0.15
-"""By which a vehicle overlaps a firm thing beside its way, off which it glances."""
+GLANCES = (0.25, 0.17, 0.08)
+"""Shares of its width by which a vehicle may overlap a firm thing off which it glances, the likeliest first: up to a
+quarter, as in the small-overlap test of the IIHS, where the thing passes outside of the rails of its frame."""
 _ALL_TOLD = 1.0
 """A rest with a lower cost misses no stated part."""
 _OTHER_SIDE = 1.0
@@ -124,7 +125,7 @@ def place_thing(
         track = _stand(scene, strike, pose)
         scene.settle()
         if _is_struck(scene, strike, order):
-            missed = _OTHER_SIDE * _on_another_side(scene, strike) + (0.0 if more else cost())
+            missed = _OTHER_SIDE * on_another_side(scene, strike) + (0.0 if more else cost())
             best = (missed, track) if best is None or missed < best[0] else best
             further -= 1
         del scene.tracks[strike.thing.id]
@@ -152,7 +153,7 @@ def _is_struck(scene: Scene, strike: Strike, order: ToldOrder) -> bool:
     return bool(hits) and touched(hits[0]) == pair and hits[0] is not scene.touches[0] and order.holds(pair)
 
 
-def _on_another_side(scene: Scene, strike: Strike) -> bool:
+def on_another_side(scene: Scene, strike: Strike) -> bool:
     """Whether the vehicle touches the object first with another side than the stated one."""
     seen = first_sides(scene.tracks[strike.by], scene.tracks[strike.thing.id])
     return strike.side is not None and seen is not None and seen[0] != strike.side
@@ -236,7 +237,7 @@ def _beside(track: Track, k: int, strike: Strike, size: Size) -> Iterator[tuple[
         rank = 0 if side == strike.side or (strike.side is None and leads) else 1 if leads else 2
         left = strike.asides[0] * track.size[1 - number % 2]
         if strike.glances:
-            left = math.copysign((track.size[1] + width) / 2 - GLANCE_M, left)
+            left = math.copysign((track.size[1] + width) / 2 - GLANCES[-1] * track.size[1], left)
         turned = out + (math.pi / 2 if depth != size[0] else 0.0)
         yield rank, np.array([
             x + reach * math.cos(out) - left * math.sin(out), y + reach * math.sin(out) + left * math.cos(out), turned,

@@ -14,7 +14,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats, Size, sides_at
 from sgcad_core.planner.actor_plan import Role
-from sgcad_core.planner.aftermath.struck_objects import GLANCE_M
+from sgcad_core.planner.aftermath.struck_objects import GLANCES
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.lines.departures import comes_back, side_of
 from sgcad_core.planner.motion import Motion
@@ -24,10 +24,9 @@ NARROW_M = 1.2
 """A wider thing has no side of its own."""
 SHARES = (0.45, 0.72, 0.25)
 """Of half the side: how far beside its middle the thing stands where the report tells a rotation or a facing."""
-_DEEPER_M = (0.4,)
-"""Overlap with a firm thing that throws a vehicle back to the road, where the usual one does not suffice."""
-USUAL = 0.5
-"""The same where it tells neither."""
+USUAL, STAYS_AT = 0.5, 0.2
+"""The same where it tells neither, and where it tells that the vehicle comes to rest at the thing: hardly turned, it
+stops there."""
 
 
 def beside_middle(found: Encounter) -> list[Encounter]:
@@ -63,18 +62,18 @@ def _beside_middle(found: Encounter) -> Iterator[Encounter]:
 def _shares(role: Role, thing: Role) -> tuple[float, ...]:
     """Signed shares of half a side: positive turns the vehicle counter-clockwise.
 
-    A firm thing off which the vehicle glances stands at the corner: on the outer side where it throws the vehicle back
-    to the road.
+    A firm thing off which the vehicle glances stands as near the middle as lets it pass: on the outer side where it
+    throws the vehicle back to the road.
     """
     if _glances(role, thing):
-        back = comes_back(role.actor.maneuver, role.told)
-        shares = [1.0 + (thing.size[1] - 2 * m) / role.size[1] for m in (GLANCE_M, *_DEEPER_M * back)]
-        turned = 0.0 if back else role.spins
+        turned = 0.0 if comes_back(role.actor.maneuver, role.told) else role.spins
         to_left = turned > 0 if turned else side_of(role.actor.maneuver, role.told.departs) == "left"
+        shares = (1.0 + thing.size[1] / role.size[1] - 2 * overlap for overlap in GLANCES)
         return tuple(share if to_left else -share for share in shares)
     if role.spins:
         return tuple(math.copysign(share, role.spins) for share in SHARES)
-    return (USUAL if side_of(role.actor.maneuver, role.told.departs) == "left" else -USUAL,)
+    share = USUAL if role.told.rest.against is None else STAYS_AT
+    return (share if side_of(role.actor.maneuver, role.told.departs) == "left" else -share,)
 
 
 def _glances(role: Role, thing: Role) -> bool:

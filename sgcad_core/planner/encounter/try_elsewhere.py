@@ -98,7 +98,7 @@ def _speeds(found: Encounter, *, again: bool) -> tuple[tuple[float, float], ...]
     if again:
         return (*_SPEEDS, *_SPEEDS_AGAIN)
     rests = [option.role.told.rest for option in (found.first, found.second)]
-    if any(rest.distance_m is not None and rest.distance_m <= AT_IMPACT_M for rest in rests):
+    if any(rest.against or (rest.distance_m is not None and rest.distance_m <= AT_IMPACT_M) for rest in rests):
         return (*_SPEEDS_SHORT, *_SPEEDS)
     aside = any(rest.side is not None and rest.where == "off_road" for rest in rests)
     return (_SPEEDS[0], *_SPEEDS_ASIDE, *_SPEEDS[1:]) if aside else _SPEEDS

@@ -14,7 +14,14 @@ from sgcad_core.case.records import ActorInfo, Trajectory
 from sgcad_core.formats.openscenario.playing.player import play
 from sgcad_core.formats.openscenario.writing.writer import write_xosc
 from sgcad_core.metrics.rest_error import attitude_of
-from sgcad_core.planner.aftermath.rollover import TRIPPED_S, barrel_costs, roll_angles, rolls_over, turned_over
+from sgcad_core.planner.aftermath.rollover import (
+    TRIPPED_S,
+    barrel_costs,
+    quarters_short,
+    roll_angles,
+    rolls_over,
+    turned_over,
+)
 from sgcad_core.records.course import CourseTold, RestTold
 
 attitudes = st.sampled_from(["wheels", "roof", "left", "right"])
@@ -63,6 +70,13 @@ def test_it_rolls_no_more_often_than_its_way_allows(way_m, quarters):
     course = CourseTold(rolls=True, roll_quarters=9, rolls_to="right")
     poses = np.column_stack((np.linspace(0.0, way_m, 160), np.zeros((160, 2))))
     assert float(roll_angles(poses, 0, course)[-1]) == pytest.approx(quarters * math.pi / 2, abs=0.01)
+
+
+@pytest.mark.parametrize(("way_m", "short"), [(0.1, 8), (5.2, 4), (60.0, 0)])
+def test_a_way_is_short_by_the_quarter_turns_that_it_does_not_allow(way_m, short):
+    poses = np.column_stack((np.linspace(0.0, way_m, 160), np.zeros((160, 2))))
+    assert quarters_short(poses, 0, CourseTold(rolls=True, roll_quarters=9)) == short
+    assert quarters_short(poses, 0, CourseTold(rolls=True)) == 0
 
 
 def test_without_a_told_end_it_comes_to_lie_on_the_side_to_which_it_slides():

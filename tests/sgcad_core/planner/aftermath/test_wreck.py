@@ -346,6 +346,30 @@ def test_a_car_glances_off_a_firm_thing_that_stays(hand: float) -> None:
     assert np.sign(poses["car"][-1, 1]) == -hand
 
 
+def glanced(overlap_m: float, heading: float = 0.0) -> float:
+    """The share of its speed that an eastbound car, turned by an angle, keeps 0.2 s behind a firm tree."""
+    size, at = (0.5, 0.5), round((20.0 - CAR[0]) / (12.0 * 0.05))
+    driven = np.column_stack((0.6 * np.arange(COUNT), np.zeros(COUNT), np.full(COUNT, heading)))
+    half = (CAR[0] * abs(math.sin(heading)) + CAR[1] * math.cos(heading)) / 2
+    tree = np.repeat([[20.0, half + size[1] / 2 - overlap_m, 0.0]], COUNT, axis=0)
+    car = Mover("car", body((0.0, 0.0, heading), CAR, mass_kg("car", CAR[0])), driven, DRAG)
+    thing = Mover("tree", body((0.0, 0.0, 0.0), size, None), tree, DRAG, firm=True)
+    poses, touches = Wreck((car, thing), COUNT).settle()
+    at = round(touches[0].t_s / 0.05)
+    return float((poses["car"][at + 5, 0] - poses["car"][at + 4, 0]) / 0.6)
+
+
+def test_the_deeper_a_firm_thing_is_overlapped_the_more_speed_is_lost_in_passing_it() -> None:
+    kept = [glanced(share * CAR[1]) for share in (0.08, 0.17, 0.25)]
+    assert kept[0] > kept[1] > kept[2]
+    assert 0.3 < kept[2] < 0.55  # half, and what the ground takes
+    assert kept[0] > 0.7
+
+
+def test_a_yawed_car_loses_for_the_share_of_its_width_across_the_way() -> None:
+    assert glanced(0.3, 0.6) > glanced(0.3)
+
+
 # ------------------------------------------------------------------ things that give way
 @settings(max_examples=20, deadline=None)
 @given(st.floats(6.0, 25.0), st.floats(-0.8, 0.8))

@@ -16,15 +16,17 @@ from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
 from tests.sgcad_core.planner.crash_scenes import network
 
 
-def into_thing(told: CourseTold, size_m: float = 0.4, *, firm: bool = False):
-    """The encounter of V1 eastbound with a thing beside its road."""
+def into_thing(told: CourseTold, size_m: float = 0.4, *, firm: bool = False, on: bool = False):
+    """The encounter of V1 eastbound with a thing beside its road; `on`: it then strikes a second one."""
     actors = (
         Actor(id="V1", kind="car", road="W", direction="forward", exit_road="E", maneuver="departing_road_right"),
         Actor(id="O1", kind="object", road="E", direction="forward", maneuver="stopped", length_m=size_m,
               width_m=size_m, firm=firm),
     )  # fmt: skip
     contact = Contact(striker="V1", struck="O1", striker_area="front", struck_area="front")
-    behavior = BehaviorSpec(actors=actors, contacts=(contact,))
+    further = (contact.model_copy(update={"struck": "O2"}),) if on else ()
+    actors += (actors[1].model_copy(update={"id": "O2"}),) if on else ()
+    behavior = BehaviorSpec(actors=actors, contacts=(contact, *further))
     lines = {a.id: course_of(network("four_leg"), a, 3.0) for a in actors}
     return Conflicts(behavior, lines, told={"V1": told}).of(contact)
 
@@ -75,3 +77,17 @@ def test_the_moment_and_the_way_of_the_vehicle_stay() -> None:
 
 def test_a_wide_thing_stays_where_it_is() -> None:
     assert beside_middle(into_thing(CourseTold(), size_m=3.0)) == []
+
+
+def test_a_thing_at_which_the_vehicle_comes_to_rest_is_met_near_the_middle() -> None:
+    (place,) = [left_m(one) for one in beside_middle(into_thing(CourseTold(rest=RestTold(against="pole"))))]
+    assert abs(place) < 0.3
+
+
+def test_a_firm_thing_that_is_passed_overlaps_by_a_quarter_of_the_width_or_less() -> None:
+    found = into_thing(CourseTold(), firm=True, on=True)
+    width, size_m = found.first.role.size[1], 0.4
+    overlaps = [width / 2 + size_m / 2 - abs(left_m(one)) for one in beside_middle(found)]
+    assert overlaps == sorted(overlaps, reverse=True)
+    assert overlaps[0] == pytest.approx(0.25 * width, abs=0.02)
+    assert 0.0 < overlaps[-1] < 0.1 * width
