@@ -2,6 +2,7 @@
 
 A sign, a mailbox or a deer that is struck first stands on the way on which the vehicle comes, as late as the vehicle
 still drives on to the contact that follows; it is thrown aside, and the vehicle keeps its line: its driver steers on.
+What is firm takes a part of its speed.
 Placed when everything else is settled. Knows scenes and their tracks; no roads but their surface.
 """
 
@@ -16,7 +17,7 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats, Size, gaps_where_near
 from sgcad_core.planner.actor_plan import facing, is_beside
 from sgcad_core.planner.aftermath.struck_objects import Strike, standing_track
-from sgcad_core.planner.aftermath.wreck_bodies import FALLEN_MPS2
+from sgcad_core.planner.aftermath.wreck_bodies import FALLEN_MPS2, LOST
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import TUMBLING_MPS2, Scene, Track
 from sgcad_core.records.specs import Area, size_m
@@ -34,8 +35,9 @@ _CORNER = 0.34
 _DEPTH_M, _SHARE = 0.12, 0.6
 """Overlap at the sample of the contact, at most that share of a step."""
 _GRAZED_M = 0.06
-_GLANCED_M, _GLANCED_MOST_M = 0.1, 0.3
-"""Overlap with a firm thing beside the way, and the most of it while the vehicle passes."""
+_GLANCED_M, _GLANCED_MOST_M, _GLANCED_DEPTH_M = 0.1, 0.3, 0.06
+"""Overlap with a firm thing beside the way, the most of it while the vehicle passes, and that along the way at the
+sample of the contact: less than beside it, so that it is the end of the vehicle that touches."""
 _OFF_ROAD_M = 0.3
 _PASSES_M = 0.12
 """Gap at which the vehicle then passes it."""
@@ -64,8 +66,25 @@ def knock_aside(scene: Scene, strikes: Sequence[Strike], surface: RoadSurface) -
     for strike in reversed(strikes):
         found = _best(scene, strike, surface, range(latest, max(latest - _LONGEST, 1), -_STEP))
         latest = found - _BETWEEN if found else latest
+        if found and strike.thing.firm:
+            _slow_at(scene, strike, found)
         if found is None:
             yield f"{strike.by} does not strike {strike.thing.id} before the first contact of vehicles, as is told"
+
+
+def _slow_at(scene: Scene, strike: Strike, k: int) -> None:
+    """Lets a vehicle come faster up to sample `k`, at which a firm thing takes a part of its speed; it comes as before
+    where it has a trailer, would touch another actor, or its line is too short."""
+    track, overlap_m = scene.tracks[strike.by], _GRAZED_M if is_beside(strike.side or "front") else _GLANCED_M
+    came = np.arange(-k, 0) * STEP_S / (1.0 - LOST * overlap_m / track.size[1])
+    own = track.own_s + k * STEP_S + came
+    if track.motion.standing or own[0] < track.motion.time_s[0] or any(strike.by in pair for pair in scene.hitches):
+        return
+    poses = track.motion.poses(own)
+    others = (t for name, t in scene.everybody.items() if name != strike.by)
+    if all(_least(poses, track.size, t.poses[:k], t.size) > 0.0 for t in others):
+        track.driven = np.concatenate((poses, track.driven[k:]))
+        track.poses = np.concatenate((poses, track.poses[k:]))
 
 
 def drive_over(scene: Scene, strikes: Sequence[tuple[Strike, int]], surface: RoadSurface) -> Iterator[str]:
@@ -107,7 +126,8 @@ def _places(scene: Scene, strike: Strike, samples: Sequence[int]) -> Iterator[_P
             yield _Place(k, side, track.size[0] / 2 + size[1] / 2 - 0.9 * by_m, left_m, hand * (_GRAZED_M + _PASSES_M))
             continue
         along = 1.0 if side == "front" else -1.0
-        ahead_m = along * (track.size[0] / 2 + size[0] / 2 - min(_DEPTH_M, _SHARE * by_m))
+        depth_m = min(_GLANCED_DEPTH_M if strike.thing.firm else _DEPTH_M, _SHARE * by_m)
+        ahead_m = along * (track.size[0] / 2 + size[0] / 2 - depth_m)
         for hand in (-1.0, 1.0):
             if strike.thing.firm:
                 yield _Place(k, side, ahead_m, hand * ((track.size[1] + size[1]) / 2 - _GLANCED_M), 0.0)

@@ -31,6 +31,8 @@ ACCELERATION_MPS2 = 2.2
 BRAKING_MPS2 = 3.0
 YAW_RADPS = 1.1
 """Planned yaw rate at most: under the 1.5 rad/s that count."""
+GROUND_MPS2 = 1.0
+"""Deceleration of free wheels on grass or gravel, 0.1 g."""
 EMERGENCY_SHARE = 0.6
 """Of the friction that braking before a crash takes: 5 m/s2 on dry roads, under the 7 of locked wheels."""
 _STANDING_MPS = 5.0
@@ -58,11 +60,14 @@ class Pace:
     """Whether bends are driven at the highest lateral acceleration instead of the usual one."""
     brakes: bool = False
     """Whether it brakes as before an expected crash."""
+    off: tuple[float, float] | None = None
+    """Stations at which it begins to leave the road, and from which on it is off it."""
 
     @property
     def lateral_mps2(self) -> float:
         """Sideways acceleration that is planned with."""
-        return self.within(HARD_MPS2, "hard") if self.hard else self.within(LATERAL_MPS2, "lateral")
+        hard = self.hard or self.off is not None
+        return self.within(HARD_MPS2, "hard") if hard else self.within(LATERAL_MPS2, "lateral")
 
     @property
     def braking_mps2(self) -> float:
@@ -168,6 +173,8 @@ def drive(path: Path, pace: Pace, place_m: float, more: tuple[Path, Path] | None
     if pace.slow_at_m is not None:
         limit = np.where(station >= pace.slow_at_m, np.minimum(limit, pace.slow_mps**2), limit)
     limit = _rising(along[::-1] * -1, limit[::-1], pace.braking_mps2)[::-1]
+    if pace.off is not None:
+        limit = _rolling_off(pace, station, along, limit)
     if pace.starts_at_m is not None:
         ahead = station >= pace.starts_at_m
         station, along, limit = station[ahead], along[ahead], limit[ahead]
@@ -176,6 +183,17 @@ def drive(path: Path, pace: Pace, place_m: float, more: tuple[Path, Path] | None
     mean = np.maximum((speed[1:] + speed[:-1]) / 2, 0.02)
     time = np.concatenate(([0.0], np.cumsum(np.diff(along) / mean)))
     return time - np.interp(place_m, station, time), station
+
+
+def _rolling_off(pace: Pace, station: Floats, along: Floats, limit: Floats) -> Floats:
+    """(n,) v^2 below a limit of a vehicle that leaves the road: it speeds up no more, and beside it the ground slows
+    it. `along`: (n,) metres on the driven line."""
+    begins, edge = pace.off or (math.inf, math.inf)
+    late = station >= begins
+    taken = 2 * GROUND_MPS2 * np.maximum(along - np.interp(edge, station, along), 0.0)[late]
+    falls = np.minimum.accumulate(limit[late] + taken) - taken
+    limit[late] = np.maximum(falls, np.minimum(limit[late], _CRAWL_MPS**2))
+    return limit
 
 
 def stand(path: Path, place_m: float) -> tuple[Floats, Floats]:

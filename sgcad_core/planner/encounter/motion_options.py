@@ -34,6 +34,7 @@ from sgcad_core.planner.encounter.place_cost import cost_outside, in_junction, m
 from sgcad_core.planner.lines.axle_to_box import bent_before, box_path, easiest, offset, skidding, tightest
 from sgcad_core.planner.lines.box_angles import aiming, skids, slides, spins
 from sgcad_core.planner.lines.crossing import implied_crossings
+from sgcad_core.planner.lines.departures import leaving
 from sgcad_core.planner.lines.path import Path, ramp, ramp_length_m, widened_bends
 from sgcad_core.planner.lines.turning import corner_lines
 from sgcad_core.planner.long_things import corner_m, runs_along
@@ -268,8 +269,7 @@ def in_the_way(option: Option, other: Option) -> Motion:
 
 def _begins(role: Role, drift: Drift) -> float:
     """Station at which the maneuver begins to show."""
-    turn = role.course.turn
-    shown = [turn.entry_m - 2.0] if turn is not None else []
+    shown = [turn.entry_m - 2.0] if (turn := role.course.turn) is not None else []
     shown += [drift.begins_m] if drift.earlier or (drift.left_m and drift.end_m > 0) else []
     return min(shown, default=role.place.station_m - (3.0 if role.actor.record.walks else 10.0))
 
@@ -281,7 +281,7 @@ def _pace(role: Role, option: Option) -> Pace:
     curve = max(usual * pacing.factor, speed if told else 3.0)
     drift = option.drift
     hard = told or any((drift.note, option.twist.note, option.dodge, drift.earlier, drift.yaw_rad))
-    pace = Pace(speed, curve, starts_at_m(role, pacing), grip_mps2=role.grip_mps2, hard=hard)
+    pace = Pace(speed, curve, starts_at_m(role, pacing), grip_mps2=role.grip_mps2, hard=hard, off=leaving(role, drift))
     slows = role.actor.maneuver == "slowing" and not role.untouched
     if not (slows or role.told.brakes):
         return pace

@@ -136,6 +136,19 @@ def in_a_mouth(course: Course, s_m: Floats, left_m: Floats) -> NDArray[np.bool_]
     return beside & mouth
 
 
+def leaving(role: Role, drift: Drift) -> tuple[float, float] | None:
+    """Stations at which a vehicle begins to leave the road, and from which on its line is off it up to its place; None
+    where it is on it there. One that was off it before, by told moves, begins at the edge."""
+    if side_of(role.actor.maneuver, role.told.departs) is None or role.actor.record.walks:
+        return None
+    s_m = role.course.path.s_m[role.course.path.s_m <= max(role.place.station_m, drift.end_m)]
+    on = np.flatnonzero(on_the_road(role.course, drift.profile(s_m)))
+    if not len(on) or on[-1] + 1 >= len(s_m):
+        return None
+    edge_m = float(s_m[on[-1] + 1])
+    return (edge_m if drift.earlier else min(drift.begins_m, edge_m)), edge_m
+
+
 def shift_length_m(role: Role, left_m: float, ease: float) -> float:
     """The length of a shift to the left at the usual speed: ease 1 is hard, more is gentler; longer on snow and ice."""
     dry = ramp_length_m(left_m, ease * usual_speed(role), SWERVE_MPS2)

@@ -72,6 +72,17 @@ def test_a_thing_of_any_size_is_struck_first_with_the_told_side(
     assert order(early("object", side, speed_mph=speed_mph, size=size))[:2] == [("O1", "V1"), ("V1", "V2")]
 
 
+def test_a_firm_thing_that_is_glanced_on_the_way_takes_a_part_of_the_speed() -> None:
+    behavior = early("object", "front")
+    firm = [a.model_copy(update={"firm": a.id == "O1"}) for a in behavior.actors]
+    made = plan(behavior.model_copy(update={"actors": tuple(firm)}), network("four_leg"))
+    tracks, sizes = {t.actor: t.pose for t in made.trajectories}, {a.id: size_m(a) for a in behavior.actors}
+    hit = int(np.flatnonzero(box_gaps(tracks["V1"], sizes["V1"], tracks["O1"], sizes["O1"]) <= 0)[0])
+    speed = np.hypot(*np.diff(tracks["V1"][:, :2], axis=0).T) / 0.05
+    assert made.realised
+    assert 0.8 < speed[hit + 1] / speed[hit - 2] < 0.95
+
+
 def test_a_lone_vehicle_rolls_over_and_touches_nobody() -> None:
     actor = Actor(id="V1", kind="car", road="W", direction="forward", maneuver="departing_road_right", speed_mph=45)
     told = CourseTold(rolls=True, rest=RestTold(facing_deg=0.0, attitude="roof"))
