@@ -66,9 +66,10 @@ def _shares(role: Role, thing: Role) -> tuple[float, ...]:
     throws the vehicle back to the road.
     """
     if _glances(role, thing):
-        turned = 0.0 if comes_back(role.actor.maneuver, role.told) else role.spins
+        back = comes_back(role.actor.maneuver, role.told)  # hardly held up first, so that it reaches the road
+        turned = 0.0 if back else role.spins
         to_left = turned > 0 if turned else side_of(role.actor.maneuver, role.told.departs) == "left"
-        shares = (1.0 + thing.size[1] / role.size[1] - 2 * overlap for overlap in GLANCES)
+        shares = (1.0 + thing.size[1] / role.size[1] - 2 * overlap for overlap in (GLANCES[::-1] if back else GLANCES))
         return tuple(share if to_left else -share for share in shares)
     if role.spins:
         return tuple(math.copysign(share, role.spins) for share in SHARES)
