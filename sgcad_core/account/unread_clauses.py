@@ -71,12 +71,18 @@ def _told(sentence: Sentence) -> Iterator[str]:
     for words in of_role("telling"):
         if words.search(sentence.text):
             yield str(words.yields["tells"])
-    if is_impact(sentence.text):
+    if _touches(sentence):
         yield "contact"
     if sentence.role in ("approach", "avoidance") and _VEHICLE.search(sentence.text):
         yield "motion"
     if rule("near_events.act").search(sentence.text):
         yield "evasion"
+
+
+def _touches(sentence: Sentence) -> bool:
+    """Whether a sentence tells a contact with more than the ground; one that only dates something by it does not."""
+    told = rule("account.dated_by_impact").sub(" ", sentence.text)
+    return is_impact(rule("account.met_ground").sub(" ", told))
 
 
 def _unread(reading: Reading, sentence: Sentence, kind: str) -> Item:
@@ -118,21 +124,26 @@ def _out(words: Rule, text: str, known: Collection[int | None]) -> str:
 
 def _side(reading: Reading, sentence: Sentence, read: _Read) -> bool:
     """Sides count where a contact is told; those of the first contact may be told in another sentence."""
-    if not is_impact(sentence.text) or read.has(sentence.start, "_area"):
+    if not _touches(sentence) or read.has(sentence.start, "_area") or not _tells_side(sentence):
         return True
     known = {name for names in read.facts.values() for name in names}
     return {"contacts.0.striker_area", "contacts.0.struck_area"} <= known
 
 
+def _tells_side(sentence: Sentence) -> bool:
+    """Whether a side that a sentence names may have touched: not that of a road, or one to which it rolled."""
+    text = rule("account.side_of_road").sub(" ", sentence.text)
+    return any(words.search(text) for words in of_role("telling") if words.yields["tells"] == "side")
+
+
 def _roll(reading: Reading, sentence: Sentence, read: _Read) -> bool:
-    return read.has(sentence.start, ".rolls") or any(course.rolls for course in reading.crash.courses.values())
+    spun = read.has(sentence.start, ".spin") and rule("course_rest.turned_by").search(sentence.text)
+    return bool(spun) or read.has(sentence.start, ".roll") or any(c.rolls for c in reading.crash.courses.values())
 
 
 def _contact(reading: Reading, sentence: Sentence, read: _Read) -> bool:
     """A contact of this sentence, or of the vehicles that it names."""
     if reading.crash.near_crash or read.has(sentence.start, "contacts.", "impacts.", "others."):
-        return True
-    if not is_impact(rule("account.met_ground").sub(" ", sentence.text)):
         return True
     if "contact" in read.acts.get(sentence.start, ()):
         return True

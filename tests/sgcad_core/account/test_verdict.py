@@ -156,6 +156,10 @@ def test_an_evasion_of_one_of_a_near_crash_that_was_not_read_costs_the_verdict(s
     ("V1 was northbound. The front of V1 struck the back of V2. V3 was hit by flying components.", {"text.contact"}),
     ("V1 was northbound. V1 left the road and its right side contacted the ground as V1 tripped.", set()),
     ("The front of V1 struck the back of V2 where the lane 3 marker was.", {"text.lane"}),
+    ("V1 was northbound. V1 struck V2 and came to rest on the right side of the roadway.", set()),
+    ("V1 was northbound. The front of V1 struck the back of V2. Both rested near the point of impacts.", set()),
+    ("V1 was northbound. The front of V1 struck the back of V2. V2 rotated one quarter turn clockwise.", set()),
+    ("V1 was northbound in lane 2. V1 crossed over lane one and left the road on the right. V1 struck a tree.", set()),
 ])  # fmt: skip
 def test_what_seems_told_and_was_not_read_is_named(text, unread) -> None:
     found = [*unread_clauses(made(text))]
