@@ -156,7 +156,8 @@ def _contact_mention(
     told = _active(statement, actor, actor_area, scope, m.group(), roster)
     if not told or told.other in roster.ids:
         return with_damage(told, scope)
-    wheel = rule("contact_words.wheel_end").search(before) or rule("contact_words.wheel_end").search(scope)
+    ends = scope if nxt is None else f"{scope}."  # a part right before the next verb is what touches there
+    wheel = rule("contact_words.wheel_end").search(before) or rule("contact_words.wheel_end").search(ends)
     return replace(told, actor_area="front") if wheel else told
 
 

@@ -131,7 +131,7 @@ def before_near_miss(read: CoursesRead, *, of_thing: bool) -> CoursesRead:
 def _read(one: _CourseReader, segment: Segment, impact: int, event: str, *, late: bool = False) -> None:
     """Take what a segment tells. `late`: it stands behind the first contact in that sentence."""
     before, behind = split(segment, impact)
-    if late and segment.number == impact and not behind:
+    if late and segment.number == impact:
         behind = segment.text
     if event and segment.number == impact and (at := segment.text.lower().find(event)) >= 0:
         before, behind = segment.text[:at], segment.text

@@ -1,18 +1,21 @@
 """Contacts behind the first one: with things beside the road, and of the same two vehicles once more.
 
-Contacts of other vehicles are read with the first one (`sgcad_core.reading.contacts.contacts`); here they are put in
-order with what else was hit. Reads resolved sentences; knows no road.
+Contacts of other vehicles are read with the first one (`sgcad_core.reading.contacts.contacts`), further ones of the
+same two by `repeated_contacts`; here they are put in order with what else was hit. Reads resolved sentences; knows no
+road.
 """
 
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from sgcad_core.reading.actors.vehicles import Roster
 from sgcad_core.reading.contacts.contact_records import GROUND, ContactMention
 from sgcad_core.reading.contacts.crash_course import UNREAD, CoursesRead, ImpactRead
+from sgcad_core.reading.contacts.repeated_contacts import repeated_contacts
 from sgcad_core.reading.contacts.rest_words import touched_at_rest
 from sgcad_core.reading.inference.inference_state import end_of, side_met
 from sgcad_core.reading.language import of_role, rule
@@ -20,12 +23,14 @@ from sgcad_core.reading.motion.clauses import Segment, Statement
 from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.area_phrases import area_of, plain
 from sgcad_core.reading.text.normalise import NUMBERS
-from sgcad_core.reading.text.sentence_roles import Role
+from sgcad_core.reading.text.sentence_roles import HIT, Role
 from sgcad_core.records.course import ImpactTold
 from sgcad_core.records.specs import Area
 
 _SLACK = 12
 """Characters by which a word may stand earlier in a sentence's one form than in the sentence."""
+_NEAR = 60
+"""Characters behind a thing within which the side that struck it is told, unless another contact is told first."""
 MOST_OF_A_KIND = 3
 """Things of one kind in one clause that are drawn at most."""
 _RETOLD: tuple[Role, ...] = ("interview", "injury")
@@ -37,20 +42,26 @@ def later_impacts(
     roster: Roster,
     contact_mentions: Sequence[ContactMention],
 ) -> tuple[ImpactRead, ...]:
-    """Contacts with things and second contacts of the same pair, in order. `segments`: of `acting_segments`."""
+    """Contacts with things and second contacts of the same two, in order. `segments`: of `acting_segments`."""
     first = next((b for b in contact_mentions if b.other in roster.ids), None)
     places = {t.number: plain(t, roster).lower() for t in statements}
-    things = _in_order(
-        places,
-        [read for segment in segments for read in _things(segment)],
-        [read for b in contact_mentions[not first :] if (read := _of_mention(b, roster))],
-    )
+    told = [read for b in contact_mentions if (read := _of_mention(b, roster))]
+    alone = first is None and bool(contact_mentions) and _of_mention(contact_mentions[0], roster) is not None
+    acts = [read for segment in segments for read in _things(segment)]
+    things = _in_order(places, acts, told, alone=alone)
     things = [x for x in things if not touched_at_rest(places.get(x.source.number, ""), _place(x, places)[1])]
-    again = list(_again(statements, roster, contact_mentions, first)) if first else []
+    once = list(_once(things, {t.number: t.paragraph for t in statements}))
+    if alone and acts and once and acts[0].impact.actor_area is None:  # the first contact has its side
+        once[0] = once[0]._replace(impact=replace(once[0].impact, actor_area=None))
+    again = list(repeated_contacts(statements, roster, contact_mentions, first)) if first else []
     people = list(_people(roster, contact_mentions, first is None))
-    found = sorted([*_once(things), *again, *people], key=lambda read: _place(read, places))
+    found = sorted([*once, *again, *people], key=lambda read: _place(read, places))
     pairs = _first_places(contact_mentions, roster)
-    return tuple(_ranked(read, places, pairs) if read not in again else read for read in found)
+    own = {first.actor, first.other} if first else set()
+    return tuple(
+        read if read in again and {read.impact.actor, read.impact.other} == own else _ranked(read, places, pairs)
+        for read in found
+    )
 
 
 def things_struck(
@@ -102,16 +113,23 @@ def _of_mention(mention: ContactMention, roster: Roster) -> ImpactRead | None:
     return ImpactRead(impact, mention.source)
 
 
-def _in_order(texts: Mapping[int, str], acts: Sequence[ImpactRead], mentions: Sequence[ImpactRead]) -> list[ImpactRead]:
+def _in_order(
+    texts: Mapping[int, str], acts: Sequence[ImpactRead], mentions: Sequence[ImpactRead], *, alone: bool
+) -> list[ImpactRead]:
     """Both readings of things in the order of the text; one that both have is the act, which knows its vehicle. A
-    sentence may tell further contacts with the same thing, on other sides."""
+    sentence may tell further contacts with the same thing, on other sides. `alone`: the first mention is the first
+    contact of all."""
     sides: dict[tuple[int, str, str], list[Area | None]] = {}
     for read in mentions:
         sides.setdefault(_key(read), []).append(read.impact.actor_area)
-    found = [_with_side(read, sides) for read in acts]
+    before: Counter[tuple[int, str, str]] = Counter()
+    found = []
+    for read in acts:
+        found.append(_with_side(read, sides, before[_key(read)]))
+        before[_key(read)] += 1
     seen = {(*_key(read), read.impact.actor_area) for read in found}
     acted = {(read.source.number, read.impact.other) for read in acts}
-    for read in mentions:
+    for read in mentions[alone:]:
         area = read.impact.actor_area
         again = len(set(sides[_key(read)])) > 1 and area is not None and (*_key(read), area) not in seen
         if again or (read.source.number, read.impact.other) not in acted:
@@ -124,10 +142,14 @@ def _key(read: ImpactRead) -> tuple[int, str, str]:
     return read.source.number, read.impact.actor, read.impact.other
 
 
-def _with_side(read: ImpactRead, sides: Mapping[tuple[int, str, str], Sequence[Area | None]]) -> ImpactRead:
-    """An act with the side that the same contact has by its verb of touching, the first one, where it has none of its
-    own."""
-    side = read.impact.actor_area or next(iter(sides.get(_key(read), ())), None)
+def _with_side(
+    read: ImpactRead, sides: Mapping[tuple[int, str, str], Sequence[Area | None]], before: int
+) -> ImpactRead:
+    """An act with the side that the same contact has by its verb of touching, where it has none of its own. `before`:
+    contacts with things of that name that the sentence tells before it; of fewer verbs than things the last one counts.
+    """
+    told = sides.get(_key(read), ())
+    side = read.impact.actor_area or (told[min(before, len(told) - 1)] if told else None)
     return read._replace(impact=replace(read.impact, actor_area=side))
 
 
@@ -146,18 +168,20 @@ def with_resting_contacts(impacts: Sequence[ImpactRead], read: CoursesRead, last
     return tuple(found)
 
 
-def _once(things: Sequence[ImpactRead]) -> Iterator[ImpactRead]:
-    """Impacts without retellings: the same object again in a later paragraph is the same impact;
-    on another side in the same sentence it is a further one."""
+def _once(things: Sequence[ImpactRead], paragraphs: Mapping[int, int]) -> Iterator[ImpactRead]:
+    """Impacts without retellings: the same object again in a later paragraph is the same impact, unless it is told to
+    be another one; in the same paragraph an object with a new article, or on another side, is a further one."""
     last: dict[tuple[str, str], tuple[int, Area | None]] = {}
     for read in things:
-        key, area = (read.impact.actor, read.impact.other), read.impact.actor_area
+        key, words = (read.impact.actor, read.impact.other), read.source.words
         number, (before, side) = read.source.number, last.get(key, (-1, None))
-        one_more = rule("course_impacts.one_more").search(read.source.words) is not None
-        further = number == before and (one_more or (None not in (area, side) and area != side))
-        if key not in last or number - before == 1 or further:
+        other_side = None not in (read.impact.actor_area, side) and read.impact.actor_area != side
+        told_here = paragraphs.get(number) == paragraphs.get(before)
+        further = told_here and (other_side or rule("course_impacts.one_more").search(words) is not None)
+        further |= number - before == 1 and rule("course_impacts.same_thing").search(words) is None
+        if key not in last or further or rule("course_impacts.another").search(words):
             yield read
-        last[key] = number, area
+        last[key] = number, read.impact.actor_area
 
 
 def _things(segment: Segment) -> Iterator[ImpactRead]:
@@ -201,8 +225,9 @@ def _undone(text: str, m: re.Match[str]) -> bool:
 
 
 def _hit(segment: Segment, m: re.Match[str], thing: re.Match[str], vehicle: str) -> ImpactRead:
-    behind = segment.text[m.end() : m.end() + 60]
-    own = rule("contact_words.with_its").search(behind)
+    behind = segment.text[m.end() : m.end() + _NEAR]
+    next_verb = HIT.search(behind)
+    own = rule("contact_words.with_its").search(behind[: next_verb.start()] if next_verb else behind)
     area = side_met(area_of(own["area"])) if own else None
     if rule("contact_words.wheel_end").search(behind):
         area = "front"  # a wheel is no flank
@@ -224,56 +249,3 @@ def _people(roster: Roster, contact_mentions: Sequence[ContactMention], alone: b
         if told and (b.actor, b.other) not in seen and any(user.search(b.other) for user in of_role("road_user")):
             seen.add((b.actor, b.other))
             yield ImpactRead(ImpactTold(b.actor, b.other, end_of(b.actor_area)), b.source)
-
-
-# ------------------------------------------------------------------ the same two again
-def _again(
-    statements: Sequence[Statement], roster: Roster, contact_mentions: Sequence[ContactMention], first: ContactMention
-) -> Iterator[ImpactRead]:
-    """Second contacts of the pair that touched first."""
-    pair = {first.actor, first.other}
-    by_number = {t.number: t for t in statements}
-    slapped: set[int] = set()
-    for t in statements:
-        slap = rule("course_impacts.slap").search(t.text)
-        if slap and t.number >= first.number and t.role not in UNREAD and not slapped:
-            slapped.add(t.number)
-            yield _slap(t, first)
-    for b in contact_mentions:
-        sides = b.areas_of(first.actor)
-        other_sides = sides != (first.actor_area, first.other_area) and None not in sides
-        further = b is not first and {b.actor, b.other} == pair and b.role != "interview"
-        near = 0 <= b.number - first.number <= 2 and b.number not in slapped
-        text = by_number[b.number].text
-        told = (other_sides and rule("course_impacts.again").search(text)) or _once_more(text, b, first)
-        told = told or _on_other_sides(sides, b, first)
-        if further and near and told:
-            impact = ImpactTold(b.actor, b.other, end_of(b.actor_area), end_of(b.other_area))
-            yield ImpactRead(impact, b.source)
-            return
-
-
-def _on_other_sides(sides: tuple[str | None, str | None], mention: ContactMention, first: ContactMention) -> bool:
-    """Whether a later sentence tells of sides of which one cannot be that of the first contact: of 236 such sentences
-    of coded reports without any word for a further contact, 233 tell of one."""
-    before = (first.actor_area, first.other_area)
-    if mention.number <= first.number or None in (*sides, *before):
-        return False
-    return any(not set(str(a).split("/")) & set(str(b).split("/")) for a, b in zip(sides, before, strict=True))
-
-
-def _once_more(text: str, mention: ContactMention, first: ContactMention) -> bool:
-    """Whether a mention says that it is a further contact of the same two, on whatever sides."""
-    return mention.number > first.number and rule("course_impacts.once_more").search(text) is not None
-
-
-def _slap(statement: Statement, first: ContactMention) -> ImpactRead:
-    """Both sides, in the order in which they are told, or given to the vehicles by name."""
-    sides: list[Area | None] = [None, None]
-    named = rule("course_impacts.side_of").finditer(statement.text)
-    for m in named:
-        who = 0 if m["who"] == first.actor else 1
-        sides[who] = "left" if m["hand"].lower() == "left" else "right"
-    return ImpactRead(
-        ImpactTold(first.actor, first.other, sides[0], sides[1]), Source(statement.number, "", "course_impacts.slap")
-    )

@@ -100,7 +100,8 @@ def rolls_told(text: str, *, early: bool = False) -> tuple[RollRead, ...]:
     `early`, before any contact, "rolled over" alone may tell of a line that the vehicle crossed.
     """
     rolled, m = rule("course_rest.rolled").search(text), rule("course_rest.quarters").search(text)
-    if not rolled or (early and not m and rule("course_rest.over_a_line").match(rolled[0])):
+    leads = m or rule("course_rest.leads").search(text)
+    if not rolled or (early and not leads and rule("course_rest.over_a_line").match(rolled[0])):
         return ()
     found = [RollRead("rolls", True, rolled[0], "course_rest.rolled")]
     if m and 0 < (count := number(next(filter(None, m.groups())))) <= _MOST_QUARTERS:

@@ -41,6 +41,7 @@ class Statement(NamedTuple):
     """Whether "they" at its start means all vehicles, not the driver of one."""
     earlier: str | None = None
     """The vehicle that the sentence before is about."""
+    paragraph: int = 0
 
 
 _SUBJECT = rule("clauses.subject")
@@ -69,7 +70,7 @@ def resolve_sentences(sentences: Iterable[Sentence], roster: Roster) -> tuple[St
         if before or (roster.counted and (early or (role == "other" and _SUBJECT.search(text)))):
             role = "approach"
         earlier, current = current, _main_subject(text, current, role, roster)
-        told.append(Statement(text, role, s.number, current, several, earlier))
+        told.append(Statement(text, role, s.number, current, several, earlier, s.paragraph))
         several = _of_several(text, several)
     return tuple(told)
 

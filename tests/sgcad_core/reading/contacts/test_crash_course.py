@@ -237,3 +237,20 @@ def test_one_that_turns_by_the_first_contact_did_not_lose_control(told: str, los
 def test_the_side_of_a_rest_is_one_of_the_road_not_of_the_vehicle(words: str, where: str, side: str | None) -> None:
     rest = course(f"{HIT}Vehicle #2 {words}.", "V2").rest
     assert (rest.where, rest.side) == (where, side)
+
+
+@pytest.mark.parametrize(
+    ("told", "quarters"),
+    [
+        ("Its left wheels struck a culvert and V1 tripped and rolled left six quarter turns.", 6),
+        ("Its front struck a bank. V1 fell over two quarter turns to the right.", 2),
+    ],
+)
+def test_a_rollover_is_read_in_the_sentence_of_the_contact_and_without_a_verb_of_rolling(told, quarters) -> None:
+    course = read(f"V1 was northbound and left the road on the right. {told}").crash.courses["V1"]
+    assert (course.rolls, course.roll_quarters) == (True, quarters)
+
+
+def test_the_vehicle_behind_words_of_time_is_the_one_told_of() -> None:
+    text = "V1 was northbound, left the road and struck a pole. After impact, the vehicle came to rest facing south."
+    assert read(text).crash.courses["V1"].rest.facing_deg == 180.0

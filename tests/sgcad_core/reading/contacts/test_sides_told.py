@@ -72,6 +72,25 @@ def test_a_thing_that_is_told_again_in_the_same_sentence_is_one() -> None:
     assert [i.other for i in read(text).crash.impacts] == ["pole"]
 
 
+@pytest.mark.parametrize(
+    ("told", "sides"),
+    [
+        ("Its front struck a tree, then its back struck another tree.", [None, "back"]),
+        ("The front of V1 struck a tree and V1 spun, striking another tree with its left plane.", [None, "left"]),
+        ("The front of V1 struck two trees.", [None, "front"]),
+        ("The left side door of V1 struck a hydrant and the right front tire of V1 struck a wall.", [None, "front"]),
+    ],
+)
+def test_each_of_two_things_is_met_by_the_side_that_is_told_of_it(told: str, sides: list[str | None]) -> None:
+    """The side of the first contact of all stands with that contact."""
+    assert [i.actor_area for i in read(OFF_ROAD + told).crash.impacts] == sides
+
+
+def test_another_thing_of_a_name_is_a_further_contact_however_far_behind() -> None:
+    text = OFF_ROAD + "Its front struck a tree. V1 turned. V1 slid on. Its front struck {} tree."
+    assert [len(read(text.format(which)).crash.impacts) for which in ("a second", "the")] == [2, 1]
+
+
 def test_the_damage_tells_the_side_of_a_contact_that_has_none() -> None:
     street = "The AV was stopped southbound on Oak Street. A pickup truck was traveling northbound on Oak Street. "
     hit = "The pickup truck made contact with the AV, damaging the AV's rear driver side bumper."
