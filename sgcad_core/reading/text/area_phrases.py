@@ -48,7 +48,7 @@ def plain(statement: Statement, roster: Roster) -> str:
     text = rule("zones.bare_possessive").sub(r"the \g<area> of \g<v>", text)
     text = rule("zones.frontal_of").sub("front", text)
     text = rule("zones.front_of_none").sub(r"the \g<area> of \g<v>", text)
-    text = rule("zones.part_of_side").sub(r"\g<side>", text)
+    text = rule("zones.part_of_side").sub(lambda m: m["side"] or m["plane"], text)
     text = rule("zones.two_sides").sub(r"\g<first>", text)
     text = rule("zones.side_first").sub(r"the \g<first> of \g<v>", text)
     if statement.subject:
