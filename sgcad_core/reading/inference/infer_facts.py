@@ -129,11 +129,13 @@ def _turned_headings(crash: CrashTold, inferred: CrashInferred) -> None:
 
 
 def _faced_headings(crash: CrashTold, inferred: CrashInferred) -> None:
-    """Of an account in order: gives a backing vehicle the last told facing, whatever heading it had before."""
+    """Gives a parked vehicle, and of an account in order a backing one, the last told facing, whatever heading its lane
+    or its way before had."""
     for v, motion in crash.motions.items():
         faced = [(source.number, what.removeprefix("faces "), source) for what, source in motion.sources.items()
                  if what.startswith("faces ")]  # fmt: skip
-        if motion.ordered and faced and inferred.maneuvers[v] == "backing":
+        backs = motion.ordered and inferred.maneuvers[v] == "backing"
+        if faced and (backs or inferred.maneuvers[v] == "parked"):
             _, way, source = max(faced, key=lambda told: told[0])
             inferred.headings[v], inferred.sources[f"{v} heading"] = way, source  # type: ignore[assignment]
             inferred.stated.add(v)

@@ -171,7 +171,12 @@ def _heading(builder: FactBuilder, v: VehicleFacts, read: StageResults) -> Itera
     if v.heading is None:
         return
     if v.heading_stated:
-        conflict = _differ(read.crash_told.motions[v.id].headings)
+        motion = read.crash_told.motions[v.id]
+        turns = {v.maneuver, v.meant} & {"turn_left", "turn_right", "u_turn"}
+        ways = {h.value for h in motion.headings if turns and f"exit {h.value}" in motion.sources} - {v.heading}
+        other = [h for h in motion.headings if h.value not in ways]
+        faced = v.maneuver == "parked" and f"faces {v.heading}" in motion.sources
+        conflict = not faced and _differ(other)  # the way that it turned to is no second heading
         yield builder.stated(field, v.heading, read.inferred.sources.get(f"{v.id} heading"), conflict)
     elif v is first and not read.crash.oriented:
         yield default(field, v.heading, "the first vehicle heads along its road, north if none is told")

@@ -263,3 +263,14 @@ def test_a_turn_that_must_swing_wide_is_an_assumption_with_its_reason():
     (found,) = implied_swings(notes)
     assert (found.kind, found.field) == ("assumed", "vehicles.V1.line")
     assert "no line within its lanes" in found.reason
+
+
+@pytest.mark.parametrize(("text", "twice"), [
+    ("V1 was westbound, attempting to turn left heading southbound. V2 was eastbound. V1 struck V2.", set()),
+    ("V1 was southbound. V2 was parked in the southbound side of the road facing northbound. V1 struck V2.", set()),
+    ("V1 was northbound. V1 traveled to its right and departed the east road edge. V1 struck a pole.", set()),
+    ("V1 was southbound on a road with two lanes of travel northbound. The front of V1 struck V2.", set()),
+    ("V1 was traveling north. V1 was traveling west. The front of V2 struck the right side of V1.", {"V1"}),
+])  # fmt: skip
+def test_a_way_out_of_a_turn_and_a_lane_or_an_edge_are_no_second_heading(text, twice) -> None:
+    assert {one.subject for one in contradictions(made(text)) if one.field.endswith(".heading")} == twice
