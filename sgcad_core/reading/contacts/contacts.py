@@ -156,9 +156,8 @@ def _contact_mention(
     told = _active(statement, actor, actor_area, scope, m.group(), roster)
     if not told or told.other in roster.ids:
         return with_damage(told, scope)
-    ends = scope if nxt is None else f"{scope}."  # a part right before the next verb is what touches there
-    wheel = rule("contact_words.wheel_end").search(before) or rule("contact_words.wheel_end").search(ends)
-    return replace(told, actor_area="front") if wheel else told
+    parts = (before, f"{scope}." if nxt else scope)  # a part right before the next verb is what touches there
+    return replace(told, actor_area="front") if any(map(rule("contact_words.wheel_end").search, parts)) else told
 
 
 def _meant_by_pronoun(statement: Statement, actor: str, scope: str, roster: Roster) -> str:
@@ -217,7 +216,7 @@ def _active(
     area = area_of(own["area"]) if own else area
     rest = scope[: own.start()] + scope[own.end() :] if own else scope
     other, other_area = _object(statement, actor, rest, roster)
-    if other is None:
+    if other is None or (not roster.counted and rule("contact_words.stranger_object").match(rest)):
         return None
     if (named := rule("contact.with_area_of").search(scope)) and named["v"] != other and scope[: named.start()].strip():
         actor, area = named["v"], area_of(named["area"])

@@ -51,7 +51,8 @@ def later_impacts(
     things = _in_order(places, acts, told, alone=alone)
     things = [x for x in things if not touched_at_rest(places.get(x.source.number, ""), _place(x, places)[1])]
     once = list(_once(things, {t.number: t.paragraph for t in statements}))
-    if alone and acts and once and acts[0].impact.actor_area is None:  # the first contact has its side
+    begins = alone and acts and once and _key(once[0]) == _key(acts[0]) == _key(told[0])
+    if begins and acts[0].impact.actor_area is None:  # the first contact has its side
         once[0] = once[0]._replace(impact=replace(once[0].impact, actor_area=None))
     again = list(repeated_contacts(statements, roster, contact_mentions, first)) if first else []
     people = list(_people(roster, contact_mentions, first is None))
