@@ -34,6 +34,11 @@ AT_IMPACT_M = 2.5
 """Distance from the place of the contact that stands for a rest "at the point of impact": up to twice as far counts."""
 
 
+def sense_of(spin: Spin | None) -> int:
+    """1 counter-clockwise, -1 clockwise, 0 where none is told: the sign of an angle that grows to the left."""
+    return {"counterclockwise": 1, "clockwise": -1}.get(spin or "", 0)
+
+
 @dataclass(frozen=True)
 class Move:
     """One of several moves before the first contact. `side`: of the road, or the sense of a yaw; None: none is told."""

@@ -17,7 +17,7 @@ from sgcad_core.metrics.labels.course_labels import POINT_DEG, CourseLabel, Rest
 from sgcad_core.metrics.labels.motion_label_match import STILL_M, maneuver_shown
 from sgcad_core.metrics.labels.observed_crash import STEP_S, Crash, VehicleMotion
 from sgcad_core.metrics.rest_error import SPINS_RAD
-from sgcad_core.records.course import RestTold, Steering
+from sgcad_core.records.course import RestTold, Steering, sense_of
 from sgcad_core.units import MPS_PER_MPH
 
 ASIDE_M = 0.8
@@ -179,7 +179,7 @@ def _spins(label: VehicleLabel, one: VehicleMotion) -> bool:
     since = one.turns_from
     behind = one.path.pose[since : max(since + round(_SPIN_S / STEP_S), one.hit) + 1, 2]
     turned = float(wrap_angle(np.diff(behind)).sum())
-    return turned > SPINS_RAD if label.rest.spin == "counterclockwise" else turned < -SPINS_RAD
+    return sense_of(label.rest.spin) * turned > SPINS_RAD
 
 
 class _Judge(NamedTuple):

@@ -21,7 +21,7 @@ from sgcad_core.planner.encounter.off_center import NARROW_M, SHARES, USUAL
 from sgcad_core.planner.later.later_courses import runs_on, with_run
 from sgcad_core.planner.long_things import runs_along
 from sgcad_core.planner.scene import Scene
-from sgcad_core.records.course import Courses, CourseTold
+from sgcad_core.records.course import Courses, CourseTold, sense_of
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact, size_m
 from sgcad_core.roads.surface import RoadSurface
 
@@ -106,8 +106,7 @@ def _off_middle(strike: Strike, course: CourseTold) -> Strike:
     if strike.asides != (0.0,) or max(size_m(strike.thing)) > NARROW_M:
         return strike
     if course.spin:
-        sign = 1.0 if course.spin == "counterclockwise" else -1.0
-        return replace(strike, asides=tuple(sign * share / 2 for share in SHARES))
+        return replace(strike, asides=tuple(sense_of(course.spin) * share / 2 for share in SHARES))
     both = course.spin_deg or course.rest.facing_deg is not None
     return replace(strike, asides=(-USUAL / 2, USUAL / 2) if both else (-USUAL / 2,))
 

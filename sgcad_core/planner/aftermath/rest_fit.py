@@ -43,7 +43,7 @@ from sgcad_core.planner.aftermath.told_order import ToldOrder
 from sgcad_core.planner.later.later_courses import RunOuts, run_outs, with_run
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import Scene
-from sgcad_core.records.course import Courses, CourseTold, RestTold
+from sgcad_core.records.course import Courses, CourseTold, RestTold, sense_of
 from sgcad_core.roads.surface import RoadSurface
 
 Impact = tuple[float, float]
@@ -237,8 +237,7 @@ class RestFit:
 
     def _unspun(self, name: str, course: CourseTold, ends: Floats) -> Floats:
         """(n,) costs of rotation otherwise than stated: by other degrees, or in the other sense."""
-        way = 1.0 if course.spin == "counterclockwise" else -1.0
-        turned = way * (ends[:, 2] - self._came_rad(name))
+        turned = sense_of(course.spin) * (ends[:, 2] - self._came_rad(name))
         wanted = math.radians(course.spin_deg) if course.spin_deg else 2 * _SPIN_RAD
         off, wrong = np.maximum(wanted - turned, 0.0), turned < SPINS_RAD
         if course.spin_deg:

@@ -14,7 +14,7 @@ import numpy as np
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.rest_error import attitude_of, compass_rad
 from sgcad_core.planner.motion import STEP_S
-from sgcad_core.records.course import Attitude, CourseTold
+from sgcad_core.records.course import Attitude, CourseTold, sense_of
 
 TRIPPED_S, _TRIPS_S = 0.3, 1.2
 """Time from the contact to the beginning of the roll, at least and at most: it first slides, or leaves the road, until
@@ -116,7 +116,7 @@ def turned_over(poses: Floats, at: int, told: CourseTold) -> Floats:
         turning[at:, 2] += _to_broadside(told) * _eased(np.minimum(way / min(way[-1], _TURNS_M), 1.0))
         return turning
     turn = math.remainder(compass_rad(told.rest.facing_deg) - float(poses[-1, 2]), 2 * math.pi)
-    if told.spin and (turn > 0) != (told.spin == "counterclockwise"):
+    if sense_of(told.spin) * turn < 0:
         turn -= math.copysign(2 * math.pi, turn)
     turning[at:, 2] += turn * _eased(way / way[-1])
     return turning

@@ -19,6 +19,7 @@ from sgcad_core.planner.aftermath.rest_fit import Impact
 from sgcad_core.planner.aftermath.wreck_bodies import center_of, separation, touch_points
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.motion import STEP_S, Motion
+from sgcad_core.records.course import sense_of
 
 _SLOWS_MPS2 = 3.0
 """Of a body that slides to rest, some wheels locked."""
@@ -70,7 +71,7 @@ def _wanted(role: Role, motion: Motion, own_s: float) -> float | None:
     told, came = role.told, float(motion.poses([own_s])[0, 2])
     if not _tells(role):
         return None
-    sign = {"counterclockwise": 1.0, "clockwise": -1.0}.get(told.spin or "", 0.0)
+    sign = sense_of(told.spin)
     if sign and told.spin_deg:
         return sign * math.radians(told.spin_deg)
     if told.rest.facing_deg is None:
