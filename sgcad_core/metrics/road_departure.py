@@ -17,7 +17,7 @@ from sgcad_core.metrics.labels.course_labels import POINT_DEG
 from sgcad_core.metrics.labels.observed_crash import VehicleMotion
 from sgcad_core.metrics.lane_places import Place, lane_heading, lane_steps
 from sgcad_core.metrics.rest_error import compass_rad
-from sgcad_core.records.course import DepartureSide, Hand, Move
+from sgcad_core.records.course import DepartureSide, Hand, Move, Spin, sense_of
 from sgcad_core.roads.lane_graph import LaneGraph
 
 _ALONG = math.sin(math.radians(20.0))
@@ -45,7 +45,7 @@ def left_road(graph: LaneGraph, poses: Floats, length_m: float) -> Hand | None:
     It is beside the lanes, or on those of the other direction behind a median. None while it is on its own, or where it
     never was on a lane.
     """
-    front = poses[-1:].copy()
+    front, poses = poses[-1:].copy(), along_its_way(poses)
     front[0, :2] += length_m / 2 * np.array([np.cos(front[0, 2]), np.sin(front[0, 2])])
     places = lane_steps(graph, poses).places
     seen = next((at for at in (poses[-1], front[0]) if lane_steps(graph, at[None]).places[0] in _OFF), None)
@@ -62,6 +62,23 @@ def left_road(graph: LaneGraph, poses: Floats, length_m: float) -> Hand | None:
     return "left" if np.cos(way) * north - np.sin(way) * east > 0 else "right"
 
 
+def along_its_way(poses: Floats) -> Floats:
+    """(n, 3) poses that face the way of a vehicle, of one that backs the other way: one that spins drives in the lane
+    over which it slides, whatever way it faces."""
+    if len(poses) < 2:
+        return poses
+    step = np.gradient(poses[:, :2], axis=0)
+    moving = np.hypot(*step.T) > _MOVES_M
+    if not moving.any():
+        return poses
+    way = np.arctan2(step[:, 1], step[:, 0])
+    first = int(moving.argmax())
+    backs = math.pi * (abs(float(wrap_angle(way[first : first + 1] - poses[first, 2])[0])) > math.pi / 2)
+    faced = poses.copy()
+    faced[:, 2] = np.where(moving, way + backs, poses[:, 2])
+    return faced
+
+
 _STEERS_M = 0.4
 """Least way to the side of a visible swerve."""
 _MOVES_M = 0.05
@@ -75,7 +92,7 @@ def moves_made(graph: LaneGraph, one: VehicleMotion, moves: Sequence[Move], leng
 
     A move that is missed is passed over: the next one is looked for from the same time on.
     """
-    places = np.array(lane_steps(graph, one.before).places)
+    places = np.array(lane_steps(graph, along_its_way(one.before)).places)
     found, at = [], 0
     for number, move in enumerate(moves):
         seen = _seen(one, places, move, at)
@@ -98,7 +115,7 @@ def _seen(one: VehicleMotion, places: NDArray[np.str_], move: Move, at: int) -> 
     elif move.kind == "crosses":
         shown = np.isin(rest, ["opposing", "center_lane"]) | ((rest == "off") & (aside > 0))
     elif move.kind == "yaws":
-        shown = _slip(one)[at:] * (1 if move.side == "counterclockwise" else -1) > _YAW_RAD
+        shown = _slip(one)[at:] * sense_of(cast("Spin", move.side)) > _YAW_RAD
     else:
         gone = aside - np.minimum.accumulate(aside), np.maximum.accumulate(aside) - aside
         shown = {"left": gone[0], "right": gone[1]}.get(str(move.side), np.maximum(*gone)) > _STEERS_M

@@ -19,7 +19,7 @@ from sgcad_core.planner.encounter.meeting_place import STANDING, TURNING, Place,
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.path import Path, ramp
 from sgcad_core.planner.motion import ACCELERATION_MPS2
-from sgcad_core.records.course import CourseTold
+from sgcad_core.records.course import CourseTold, sense_of
 from sgcad_core.records.specs import Actor, Area, Surface
 from sgcad_core.units import MPS_PER_MPH
 
@@ -56,22 +56,15 @@ class Role:
     other_road: str | None = None
     """The road on which the other one starts."""
     surface: Surface | None = None
-    other_spins: bool = False
-    """Whether the report states how the impact turns the other one."""
-    may_skid: bool = False
-    """Whether the report states a loss of control."""
-    other_parked: bool = False
-    """Whether the other one is parked beside the lanes."""
-    other_lost: bool = False
-    """Whether it states that of the other one."""
-    other_moves_up_m: float = 0.0
-    """How far the other one moves up to its stop."""
+    other_spins: bool = False  # the report states how the impact turns the other one
+    may_skid: bool = False  # the report states a loss of control
+    other_parked: bool = False  # beside the lanes
+    other_lost: bool = False  # the report states a loss of control of the other one
+    other_moves_up_m: float = 0.0  # to its stop
     pushed: bool = False
     """Whether it stands until right before the contact, and is then set rolling into the other one."""
-    told: CourseTold = field(default_factory=CourseTold)
-    """The evasion that the report states."""
-    goes_on: bool = False
-    """Whether it strikes something else after this contact."""
+    told: CourseTold = field(default_factory=CourseTold)  # beside its maneuver
+    goes_on: bool = False  # strikes something else after this contact
     other_long_m: float = 0.0
     """Depth of the other one where it is a thing that runs along the road; 0 of others."""
     other_leaves: int = 0
@@ -95,12 +88,17 @@ class Role:
         """Sense in which the impact turns it: 1 counter-clockwise, -1 clockwise; less where only the stated facing asks
         for it."""
         if self.told.spin:
-            return 1.0 if self.told.spin == "counterclockwise" else -1.0
+            return float(sense_of(self.told.spin))
         if self.told.rest.facing_deg is None or self.actor.record.thing:
             return 0.0
         came = float(self.course.path.poses([self.place.station_m])[0, 2])
         turn = math.remainder(compass_rad(self.told.rest.facing_deg) - came, 2 * math.pi)
         return math.copysign(0.6, turn) if math.radians(50) < abs(turn) < math.radians(170) else 0.0
+
+    @property
+    def skids_as_told(self) -> float:
+        """Sense in which it is told to turn out of control before the contact, as in `spins`."""
+        return float(self.may_skid * sense_of(self.told.yaws))
 
     @property
     def grip_mps2(self) -> float:
@@ -190,6 +188,8 @@ class Twist(NamedTuple):
     note: str = ""
     skids: bool = False
     """The box turns against its line; else the line turns with it."""
+    told: bool = False
+    """It skids in the told sense, from the loss of control into the contact."""
     through: bool = False
     """It swings out to the other side first, so that it still passes through the meeting place."""
     radius_m: float | None = None

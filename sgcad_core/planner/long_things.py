@@ -52,6 +52,13 @@ def corner_m(by: Size, side: Area | None, behind_m: float = 0.0) -> float:
     return (by[0] / 2 + behind_m) * math.sin(angle) + by[1] / 2 * math.cos(angle)
 
 
+def reach_m(by: Size, angle_rad: Floats) -> Floats:
+    """(n,) how far the farthest corner of a box lies from its center in a direction at some angle to its heading,
+    metres."""
+    reach: Floats = by[0] / 2 * np.abs(np.cos(angle_rad)) + by[1] / 2 * np.abs(np.sin(angle_rad))
+    return reach
+
+
 def hand_of_side(side: Area | None, leaves: int) -> tuple[int, ...]:
     """On which hands of a vehicle the thing may lie that a side meets: 1 left, -1 right; `leaves`: the hand on which it
     leaves the road, 0 where it stays on it."""

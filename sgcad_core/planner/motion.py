@@ -37,6 +37,8 @@ EMERGENCY_SHARE = 0.6
 """Of the friction that braking before a crash takes: 5 m/s2 on dry roads, under the 7 of locked wheels."""
 _STANDING_MPS = 5.0
 _CRAWL_MPS = 1.0
+_LEAST_SLIDE_MPS = 4.0
+"""Speed that a slide is left before its contact."""
 _ABOUT = 0.98
 _CURVE_PER_M = 0.02
 """A road that bends more is a turn and is driven at the usual speed of turns."""
@@ -159,10 +161,17 @@ def clock(start: int, stop: int) -> Floats:
     return np.arange(start, stop, dtype=np.float64) * STEP_S
 
 
-def drive(path: Path, pace: Pace, place_m: float, more: tuple[Path, Path] | None = None) -> tuple[Floats, Floats]:
+def drive(
+    path: Path,
+    pace: Pace,
+    place_m: float,
+    more: tuple[Path, Path] | None = None,
+    drag_mps2: Floats | None = None,
+) -> tuple[Floats, Floats]:
     """Times and stations of a drive at a pace; time 0 at `place_m`.
 
     `more`: the path of the box and the line of the road (where it is capped in curves), if they are other ones.
+    `drag_mps2`: (n,) what sliding tires take at the points of the path.
 
     The highest speed that keeps every limit on the driven line and never needs more than the usual accelerations: over
     v^2 an acceleration is a slope, so each pass is a running minimum.
@@ -179,7 +188,10 @@ def drive(path: Path, pace: Pace, place_m: float, more: tuple[Path, Path] | None
         ahead = station >= pace.starts_at_m
         station, along, limit = station[ahead], along[ahead], limit[ahead]
         limit[0] = 0.0
-    speed = np.sqrt(_rising(along, limit, pace.within(ACCELERATION_MPS2, "speeding")))
+    squares = _rising(along, limit, pace.within(ACCELERATION_MPS2, "speeding"))
+    if drag_mps2 is not None:
+        squares = _slowed(along, squares, np.interp(station, path.s_m, drag_mps2))
+    speed = np.sqrt(squares)
     mean = np.maximum((speed[1:] + speed[:-1]) / 2, 0.02)
     time = np.concatenate(([0.0], np.cumsum(np.diff(along) / mean)))
     return time - np.interp(place_m, station, time), station
@@ -214,6 +226,13 @@ def _rising(along: Floats, limit: Floats, slope: float) -> Floats:
     rise = 2 * slope * along
     lowest: Floats = np.minimum.accumulate(limit - rise) + rise
     return np.maximum(lowest, 0.0)
+
+
+def _slowed(along: Floats, squares: Floats, drag_mps2: Floats) -> Floats:
+    """v^2 along a line less the work of a drag, down to a slow slide."""
+    work = np.concatenate(([0.0], np.cumsum((drag_mps2[1:] + drag_mps2[:-1]) * np.diff(along))))
+    slowed: Floats = np.maximum(squares - work, np.minimum(squares, _LEAST_SLIDE_MPS**2))
+    return slowed
 
 
 def _limits(path: Path, more: tuple[Path, Path], pace: Pace) -> Floats:

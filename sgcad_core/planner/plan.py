@@ -63,9 +63,8 @@ class Plan(Record):
     `contact` is the first overlap of any two; `realised`: it is between the first declared pair on the declared areas
     (without a declared contact: no boxes touch). `notes` list what was changed.
 
-    `oddity` says how far from ordinary driving the declared pair meets: the sum of both actors' `Option.oddity`, 0 for
-    ordinary lines in any lane, up to 0.4 for other speeds and swerves, more for skids, spins and driving off the road,
-    and 1 more for each that goes where no road leads. 0 as well where they do not meet as declared.
+    `oddity`: how far from ordinary driving they meet, both actors' `Option.oddity` in sum: up to 0.4 for other speeds
+    and swerves, more for skids, spins and leaving the road, 1 more where no road leads; 0 where not met as declared.
     """
 
     trajectories: tuple[Trajectory, ...]
@@ -289,7 +288,8 @@ class _Cast:
         if self.behavior.near_crash or not (leaves or told.lost_control):
             return role
         at = departure_station(role.course, role.actor.maneuver, role.place.station_m, beyond=told.beyond)
-        return with_room(replace(role, told=told, untouched=not leaves, place=role.place._replace(station_m=at)))
+        lost = replace(role, told=told, untouched=not leaves, place=role.place._replace(station_m=at))
+        return with_room(replace(lost, may_skid=told.lost_control and (leaves or told.rolls)))
 
     def role(self, name: str) -> Role:
         """An actor at its usual place, for an encounter with another one."""

@@ -234,7 +234,7 @@ def infer(narrative: str, found: tuple[Sentence, ...], named: Mentions, seen: Ev
     states = {called.get(vehicle, vehicle): told.state for vehicle, told in seen.signals.items()}
     roads, facts = renamed(roads, called), tuple(renamed(fact, called) for fact in facts)
     crash = replace(roads.crash, gap=_gap(narrative, found, named, roads.crash))
-    lost = bool(rule("meeting.lost").search(narrative))
+    lost = bool(rule("meeting.lost").search(narrative)) or any(c.lost_control for c in crash.courses.values())
     acts = tuple(renamed(act, called) for act in acts)
     crash = with_roll_order(crash, acts, narrative)
     crash = with_turned_signals(crash, {called.get(who, who) for who, told in seen.signals.items() if told.turned})

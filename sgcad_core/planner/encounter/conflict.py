@@ -21,7 +21,7 @@ from sgcad_core.planner.encounter.motion_options import (
     forced,
     options,
     plainly,
-    slid,
+    sliding,
     spun,
     steeply,
     turned,
@@ -102,7 +102,7 @@ class Conflicts:
         a, b = pair
         found = search(self._stages(a, b), wanted)
         if found is None and self.by_force:
-            found = search([Stage((self._options(a, b, slid), self._options(b, a, slid)), _LAST_TRIES)], wanted)
+            found = search([Stage((self._options(a, b, sliding), self._options(b, a, sliding)), _LAST_TRIES)], wanted)
         if found is None:
             found = search([Stage((self._options(a, b, options), self._options(b, a, options)), _TRIES[0])], None)
             self.notes.append(cannot(contact, found))
@@ -243,7 +243,8 @@ def _as_told(role: Role) -> list[Option]:
     """The options in which it neither swerves, skids nor stands askew, unless that is told."""
     if is_standing(role):
         return [option for option in options(role) if option.twist.note != ASKEW]
-    return [option for option in options(role) if not option.twist.angle_rad and option.drift.note not in UNTOLD]
+    able = (o for o in options(role) if o.drift.note not in UNTOLD)
+    return [option for option in able if option.twist.told or not option.twist.angle_rad]
 
 
 def _towards_parked(role: Role, other: Role) -> Role:
@@ -262,7 +263,7 @@ def _facing_other(role: Role, other: Role) -> Role:
         role,
         other_mps=speed_there(other),
         other_width_m=other.size[1],
-        other_side=other.side,
+        other_side=None if runs_along(role.actor) and other.skids_as_told else other.side,  # any side may face a rail
         other_road=other.actor.road,
         other_spins=bool(other.spins),
         other_lost=other.told.lost_control,

@@ -31,13 +31,14 @@ from sgcad_core.planner.encounter.meeting_place import TURNING, turns_off
 from sgcad_core.planner.encounter.out_of_lanes import OUT, out_of_lanes, stands_out_of_lanes, starts_beside
 from sgcad_core.planner.encounter.pacing_choices import pacings
 from sgcad_core.planner.encounter.place_cost import cost_outside, in_junction, misfit, out_of_zone, waiting_zone
-from sgcad_core.planner.lines.axle_to_box import bent_before, box_path, easiest, offset, skidding, tightest
+from sgcad_core.planner.lines.axle_to_box import bent_before, box_path, easiest, offset, tightest
 from sgcad_core.planner.lines.box_angles import aiming, skids, slides, spins
 from sgcad_core.planner.lines.crossing import implied_crossings
 from sgcad_core.planner.lines.departures import leaving
+from sgcad_core.planner.lines.lost_control import entering_mps, slid
 from sgcad_core.planner.lines.path import Path, ramp, ramp_length_m, widened_bends
 from sgcad_core.planner.lines.turning import corner_lines
-from sgcad_core.planner.long_things import corner_m, runs_along
+from sgcad_core.planner.long_things import corner_m, reach_m, runs_along
 from sgcad_core.planner.motion import HARD_MPS2, Motion, Pace, drive, stand
 from sgcad_core.planner.stationary_actors import (
     any_angle,
@@ -163,7 +164,7 @@ def spun(role: Role) -> list[Option]:
     return _sorted(role, product(lines, pacings(role)[:1], spins(role)))
 
 
-def slid(role: Role) -> list[Option]:
+def sliding(role: Role) -> list[Option]:
     """Its line with the box sliding at any angle, where no steering brings the sides together."""
     if role.actor.record.laneless or is_standing(role):
         return spun(role)
@@ -180,12 +181,12 @@ def driving(option: Option) -> Motion:
     role, place = option.role, option.role.place.station_m
     drift, pace = option.drift, _pace(role, option)
     line, path, drivable = _lines(option, pace)
-    time, station = drive(line, pace, place, (path, role.course.path))
+    path, drag, unturned, skids_from_m = slid(role, path, option.twist, pace.cruise_mps)
+    time, station = drive(line, pace, place, (path, role.course.path), drag)
     drivable = drivable and (bool(drift.earlier) or not starts_beside(role, line, (time, station)))
-    path = skidding(path, option.twist, place, pace.cruise_mps)
     path = path.turned(drift.yaw(path.s_m)) if drift.yaw_rad or drift.earlier else path
-    begins = _begins(role, drift)
-    penalty = misfit(role, path, drift, begins)
+    begins = min(_begins(role, drift), skids_from_m)
+    penalty = misfit(role, path, drift, begins) + unturned
     if drift.left_m or drift.before_m or option.twist.angle_rad or option.dodge:
         out = out_of_lanes(role, path, (time, station))
         penalty += out
@@ -261,8 +262,9 @@ def in_the_way(option: Option, other: Option) -> Motion:
     if runs_along(role.actor):
         along = np.interp(path.s_m, road.s_m, road.heading_rad)
         out = along + option.twist.angle_rad + (facing(role.side) if role.side else 0.0) + math.pi
-        reach = corner_m(other.role.size, other.role.side) + role.size[0] / 2
-        path = path.displaced(reach * np.column_stack((np.cos(out), np.sin(out))))
+        by, turned = other.role.size, other.twist.told
+        reach = reach_m(by, out - path.heading_rad) if turned else np.full(len(out), corner_m(by, other.role.side))
+        path = path.displaced((reach + role.size[0] / 2)[:, None] * np.column_stack((np.cos(out), np.sin(out))))
         path = replace(path, heading_rad=along)
     return placed_along(option.role, option.drift, option.twist, path, stand(path, other.role.place.station_m))
 
@@ -276,7 +278,7 @@ def _begins(role: Role, drift: Drift) -> float:
 
 def _pace(role: Role, option: Option) -> Pace:
     pacing, told = option.pacing, role.actor.speed_mph is not None
-    speed = usual_speed(role) * pacing.factor
+    speed = entering_mps(role, option.twist, usual_speed(role) * pacing.factor)
     usual = 6.5 if role.actor.maneuver != "u_turn" else 4.5
     curve = max(usual * pacing.factor, speed if told else 3.0)
     drift = option.drift

@@ -14,7 +14,7 @@ from sgcad_core.geometry.plane import Floats
 from sgcad_core.planner.actor_plan import Drift, Role, along_with, line_m
 from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING, stop_m, turns_off
 from sgcad_core.planner.lines.axle_to_box import offsets
-from sgcad_core.planner.lines.departures import departs, has_median, in_a_mouth, on_the_road
+from sgcad_core.planner.lines.departures import departs, departure_sides, has_median, in_a_mouth, on_the_road
 from sgcad_core.planner.lines.path import Path
 
 _ZONE_M = 12.0
@@ -63,7 +63,7 @@ def misfit(role: Role, path: Path, drift: Drift, begins_m: float) -> Floats:
         way = -1.0 if maneuver == "turn_right" else 1.0
         penalty = penalty + _NOT_SHOWN * (way * turned < math.radians(16))
     elif maneuver == "straight":
-        penalty = penalty + _NOT_SHOWN * (np.abs(turned) > math.radians(28))
+        penalty = penalty + _NOT_SHOWN * (np.abs(turned) > math.radians(28)) * (not role.skids_as_told)
         if not role.told.inside and _in_a_row(role):
             penalty = penalty + _SLOWED_IN_JUNCTION * _in_junctions(role, path.s_m)
     elif maneuver == "slowing" and not turns_off(role.course) and not role.actor.gore:
@@ -89,10 +89,17 @@ def _front_and_rail(role: Role, path: Path) -> tuple[Floats, NDArray[np.bool_]]:
     that lies beyond the median."""
     course = role.course
     angle = path.heading_rad - np.interp(path.s_m, course.path.s_m, course.path.heading_rad)
-    front = offsets(course.path, path, path.s_m)[1] + role.size[0] / 2 * np.sin(angle)
-    met = front + np.sign(angle) * role.size[1] / 2 * np.cos(angle)
+    left, (long, wide) = offsets(course.path, path, path.s_m)[1], role.size
+    hand = np.sign(angle) if not role.skids_as_told else np.full(len(left), _hand(role))
+    front = left + hand * np.maximum(hand * long / 2 * np.sin(angle), 0.0)
+    met = left + hand * (long * np.abs(np.sin(angle)) + wide * np.abs(np.cos(angle))) / 2
     room = course.own_left_m + max(course.median_m - role.other_long_m, course.median_m / 2)
-    return front - np.sign(angle) * _CLEARLY_OFF_M, (met > room) & has_median(course) & (met < course.left_edge_m)
+    return front - hand * _CLEARLY_OFF_M, (met > room) & has_median(course) & (met < course.left_edge_m)
+
+
+def _hand(role: Role) -> int:
+    """The hand on which it leaves the road, likeliest: 1 left, -1 right."""
+    return departure_sides(role.course, role.place.station_m, role.told.departs or "either")[0]
 
 
 def _unmoved(role: Role, path: Path, drift: Drift) -> Floats:

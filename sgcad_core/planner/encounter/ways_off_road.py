@@ -9,9 +9,12 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import product
 
+import numpy as np
+
 from sgcad_core.metrics.drivability import REAR_AXLE
 from sgcad_core.planner.actor_plan import Drift, Role
 from sgcad_core.planner.encounter.meeting_place import TURNING
+from sgcad_core.planner.lines.box_angles import told_skids
 from sgcad_core.planner.lines.departures import (
     GENTLY,
     OFF_ROAD_M,
@@ -23,7 +26,7 @@ from sgcad_core.planner.lines.departures import (
     rail_m,
     still_leaving,
 )
-from sgcad_core.planner.long_things import corner_m
+from sgcad_core.planner.long_things import corner_m, reach_m
 
 _OTHER_SIDE, _STAYS_ON_ROAD = 0.25, 2.5
 """Costs of leaving the road on the unlikelier side, and of a told departure that is not driven."""
@@ -52,7 +55,8 @@ def departures(role: Role, *, fine: bool) -> list[Drift]:
         wide = aside_m(role.course, side, OFF_ROAD_M)
         for share, cost, ease in eased(shares):
             drift = change_of_line(role, wide * share, cost + _OTHER_SIDE * rank, ease)
-            found.append(still_leaving(role, drift, ease))
+            slides = role.skids_as_told and role.actor.maneuver not in TURNING
+            found.append(half_gone(role, drift, ease) if slides else still_leaving(role, drift, ease))
     if role.actor.maneuver in TURNING:
         found = [drift._replace(length_m=min(drift.length_m, _OFF_BEHIND_TURN_M)) for drift in found]
     return sorted([*found, Drift(_STAYS_ON_ROAD)], key=lambda drift: drift.cost)
@@ -68,17 +72,25 @@ def _to_rail(role: Role, side: int, cost: float) -> Iterator[Drift]:
     """Ways up to what runs along the road on a side, steepest where the corner ahead meets it; for an end the box is
     turned further than its line."""
     flank = role.side in ("left", "right")
-    corner = side * corner_m(role.size, role.side, REAR_AXLE * role.size[0])
+    corner = side * _corner_m(role)
     at_m = rail_m(role.course, side, role.other_long_m) - corner
     bounded = side > 0 and has_median(role.course)
-    yaws = [(0.0, 0.0)] if flank else [(0.0, 0.0), _YAWS_RAD]
-    yaws += [_LOST_YAW_RAD] if role.told.lost_control and not flank else []
+    steers = not flank and not role.skids_as_told  # the angle of a told skid is that of its box
+    yaws = [(0.0, 0.0), _YAWS_RAD] if steers else [(0.0, 0.0)]
+    yaws += [_LOST_YAW_RAD] if role.told.lost_control and steers else []
     ways = product(_RAIL_SHARES[: 1 if bounded else None], _EASES, yaws, _lanes_from(role, side))
     for (further, *more), (ease, harder), (yaw, turned), (before_m, crossed) in ways:
         line = change_of_line(
             role, at_m + side * further - before_m, cost + sum(more) + harder + turned + crossed, ease
         )
         yield half_gone(role, line, ease)._replace(yaw_rad=2 * side * yaw, before_m=before_m)
+
+
+def _corner_m(role: Role) -> float:
+    """How far beside its line the corner of a vehicle meets what runs along the road, metres."""
+    if not (skids := told_skids(role)):
+        return corner_m(role.size, role.side, REAR_AXLE * role.size[0])
+    return float(reach_m(role.size, np.array([math.pi / 2 - skids[0].angle_rad]))[0])
 
 
 def _lanes_from(role: Role, side: int) -> list[tuple[float, float]]:

@@ -13,9 +13,7 @@ import numpy as np
 
 from sgcad_core.geometry.plane import Floats
 from sgcad_core.metrics.drivability import REAR_AXLE
-from sgcad_core.planner.actor_plan import Twist
-from sgcad_core.planner.lines.path import Path, ramp
-from sgcad_core.planner.motion import YAW_RADPS
+from sgcad_core.planner.lines.path import Path
 
 _SLIP_RAD = math.radians(9.3)
 """Slip allowed at the center of the box, and at most at the rear axle: under the 10 degrees that count as slip."""
@@ -61,7 +59,7 @@ def bent_before(line: Path, angle_rad: float, place_m: float, radius_m: float) -
     long = abs(angle_rad) * radius_m / (1 - _RISE)
     end = float(np.interp(place_m, line.s_m, at)) - 1.5
     x = np.clip((at - end + long) / max(long, 1e-6), 0.0, 1.0)
-    turned = angle_rad * _eased(x)
+    turned = angle_rad * eased(x, _RISE)
     step = np.diff(line.points, axis=0)
     middle = (turned[1:] + turned[:-1]) / 2
     c, s = np.cos(middle), np.sin(middle)
@@ -84,19 +82,12 @@ def offsets(line: Path, other: Path, places_m: Floats) -> tuple[Floats, Floats]:
     return dx * c + dy * s, dy * c - dx * s
 
 
-def _eased(x: Floats) -> Floats:
-    """The integral of a trapezoid over [0, 1]: a bend that grows, holds and ends; 0 to 1."""
-    rise, hold = _RISE, 1 - 2 * _RISE
-    first = np.minimum(x, rise)
-    middle = np.clip(x - rise, 0.0, hold)
-    last = np.clip(x - rise - hold, 0.0, rise)
+def eased(x: Floats, rise: float) -> Floats:
+    """The integral of a trapezoid over [0, 1] at (n,) shares: a rate that grows over a share `rise`, holds, and falls
+    over the same share; 0 before, 1 behind."""
+    at, hold = np.clip(x, 0.0, 1.0), 1 - 2 * rise
+    first = np.minimum(at, rise)
+    middle = np.clip(at - rise, 0.0, hold)
+    last = np.clip(at - rise - hold, 0.0, rise)
     grown: Floats = (first**2 / (2 * rise) + middle + last - last**2 / (2 * rise)) / (1 - rise)
     return grown
-
-
-def skidding(path: Path, twist: Twist, place_m: float, speed_mps: float) -> Path:
-    """The box turns as slowly as its yaw rate allows and keeps its angle from just before the meeting place."""
-    if not twist.angle_rad or not twist.skids:
-        return path
-    length = max(12.0 + 8.0 * abs(twist.angle_rad), 1.875 * abs(twist.angle_rad) * speed_mps / YAW_RADPS)
-    return path.turned(twist.angle_rad * ramp(path.s_m, place_m - 5.0 - length, length))

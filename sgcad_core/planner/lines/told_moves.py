@@ -14,11 +14,13 @@ from typing import NamedTuple
 from sgcad_core.kinds import Maneuver
 from sgcad_core.planner.actor_plan import Drift, Role, Swing, usual_speed
 from sgcad_core.planner.lines.actor_course import Course
+from sgcad_core.planner.lines.box_angles import told_skids
 from sgcad_core.planner.lines.departures import departure_sides, has_median, left_of_road_m, way_off_m
+from sgcad_core.planner.lines.lost_control import skid_m
 from sgcad_core.planner.lines.path import ramp_length_m
 from sgcad_core.planner.long_things import runs_along
 from sgcad_core.planner.motion import HARD_MPS2
-from sgcad_core.records.course import Courses, CourseTold, Move
+from sgcad_core.records.course import Courses, CourseTold, Move, sense_of
 from sgcad_core.records.specs import Actor, BehaviorSpec
 
 _PARTLY_M = 1.0
@@ -109,12 +111,19 @@ def with_room(role: Role) -> Role:
     """The role with its place so far along its road that all told moves, or a way off a slippery road, have room
     before it."""
     place, course = role.place.station_m, role.course
+    needed_m = max(way_off_m(role), _skid_room_m(role))
     if last_move(role) is not None:
         needed_m = sum(swing.length_m for swing in _swings(role, _targets(role), place, 1.0)) + _still_m(role)
-    elif not (needed_m := way_off_m(role)):
+    if not needed_m:
         return role
     further = min(course.first_m + needed_m, course.end_m - _BEHIND_M)
     return replace(role, place=role.place._replace(station_m=max(place, further)))
+
+
+def _skid_room_m(role: Role) -> float:
+    """The way along its road of a told skid into a contact, metres; 0 without one."""
+    twist = next(iter(told_skids(role)), None)
+    return 0.0 if twist is None else skid_m(role, twist.angle_rad, usual_speed(role)) + _still_m(role)
 
 
 def _prefixed(role: Role, line: Drift, earlier: Sequence[_Target], yaw_rad: float) -> Drift:
@@ -172,7 +181,7 @@ def _yaws(moves: Sequence[Move]) -> list[int]:
     sense = 0
     for move in moves:
         if move.kind == "yaws":
-            sense = 1 if move.side == "counterclockwise" else -1
+            sense = sense_of(move.side)  # type: ignore[arg-type]
             continue
         senses.append(sense)
         sense = 0

@@ -8,7 +8,7 @@ import pytest
 from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.formats.sumo.netconvert import compile_network
 from sgcad_core.formats.sumo.plain_xml import plain_xml
-from sgcad_core.metrics.road_departure import left_road
+from sgcad_core.metrics.road_departure import along_its_way, left_road
 from sgcad_core.records.specs import Leg, RoadLayout
 from sgcad_core.roads.layout import road_spec
 
@@ -38,6 +38,20 @@ def test_a_front_beside_the_lanes_is_enough() -> None:
     poses[-1, 2] = np.pi / 4
     assert left_road(GRAPH, poses, 4.7) == "right"
     assert left_road(GRAPH, poses, 0.5) is None
+
+
+@pytest.mark.parametrize("to_x_m", [-8.0, 8.0])
+def test_one_that_spins_has_left_the_road_on_the_side_to_which_it_slides(to_x_m: float) -> None:
+    poses = driven(to_x_m)
+    poses[:, 2] += np.pi * np.clip((np.arange(60) - 15) / 20, 0, 1)  # backward before it is off its lane
+    assert left_road(GRAPH, poses, 4.7) == ("right" if to_x_m > 0 else "left")
+
+
+@pytest.mark.parametrize("backs", [0.0, np.pi])
+def test_one_that_backs_still_faces_against_its_way(backs: float) -> None:
+    poses = driven(1.6)
+    poses[:, 2] += backs
+    np.testing.assert_allclose(np.cos(along_its_way(poses)[:, 2] - poses[:, 2]), 1.0)
 
 
 def test_one_that_crosses_a_median_has_left_its_road() -> None:

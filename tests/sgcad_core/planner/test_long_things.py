@@ -9,9 +9,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from sgcad_core.geometry.plane import Box, contact_area, overlap
+from sgcad_core.geometry.plane import Box, contact_area, corners_of, overlap
 from sgcad_core.planner.aftermath.rails import stands_on_road
-from sgcad_core.planner.long_things import beside, corner_side, hand_of_side, is_long, meeting_angle, turned_to
+from sgcad_core.planner.long_things import beside, corner_side, hand_of_side, is_long, meeting_angle, reach_m, turned_to
 from sgcad_core.planner.plan import plan
 from sgcad_core.records.course import CourseTold, RestTold
 from sgcad_core.records.specs import Actor, BehaviorSpec, Contact
@@ -29,6 +29,13 @@ RAIL = Actor(
 ])  # fmt: skip
 def test_a_long_thing_is_many_times_as_wide_as_deep(size, expected):
     assert is_long(size) is expected
+
+
+@given(st.floats(-math.pi, math.pi))
+def test_the_reach_of_a_box_is_that_of_its_farthest_corner(angle):
+    corners = corners_of(np.zeros((1, 3)), (4.7, 1.8))[0]
+    away = np.array([math.cos(angle), math.sin(angle)])
+    assert float(reach_m((4.7, 1.8), np.array([angle]))[0]) == pytest.approx(float((corners @ away).max()))
 
 
 @pytest.mark.parametrize(("side", "leaves", "expected"), [

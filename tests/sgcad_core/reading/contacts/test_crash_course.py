@@ -219,8 +219,9 @@ def test_a_told_distance_goes_before_the_place_of_the_impact() -> None:
     ("V1 struck V2. V1 lost control and struck V3.", True),
 ])  # fmt: skip
 def test_one_that_turns_by_the_first_contact_did_not_lose_control(told: str, lost: bool) -> None:
-    crash = read(f"V1 was northbound. V2 was southbound on the same road. V3 was behind V2. {told}").crash
-    assert crash.courses.get("V1", CourseTold()).lost_control is lost
+    reading = read(f"V1 was northbound. V2 was southbound on the same road. V3 was behind V2. {told}")
+    assert reading.crash.courses.get("V1", CourseTold()).lost_control is lost
+    assert reading.lost_control is lost, "the planner is told so"
 
 
 @pytest.mark.parametrize(
