@@ -57,4 +57,4 @@ def _tries(role: Role) -> Iterator[tuple[Motion, float]]:
 
 
 def _plain(ways: Sequence[Option]) -> list[Option]:
-    return [way for way in ways if not way.twist.angle_rad or way.role.actor.record.thing]
+    return [way for way in ways if not way.twist.angle_rad or way.twist.told or way.role.actor.record.thing]
