@@ -73,6 +73,8 @@ def _shares(role: Role, thing: Role) -> tuple[float, ...]:
         return tuple(share if to_left else -share for share in shares)
     if role.spins:
         return tuple(math.copysign(share, role.spins) for share in SHARES)
+    if role.skids_as_told:  # it turns already, and is not told to turn on
+        return (-role.skids_as_told * SHARES[-1],)
     share = USUAL if role.told.rest.against is None else STAYS_AT
     return (share if side_of(role.actor.maneuver, role.told.departs) == "left" else -share,)
 

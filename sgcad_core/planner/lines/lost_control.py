@@ -32,9 +32,11 @@ least way of a slide, metres."""
 SPINS_DEG, USUAL_SPIN_DEG = 60.0, 180.0
 """A told rotation from which on a vehicle slides to a stop; the rotation of a spin whose angle is not told."""
 
-_RISE, _PLACE_AT, _TURNED_THERE = 0.25, 0.75, 5.0 / 6.0
-"""Share of a skid over which its yaw rate grows, and over which it falls; where on it the contact is, and the share of
-the whole rotation that is then done."""
+_RISE, _PLACE_AT = 0.25, 0.9
+"""Share of a skid over which its yaw rate grows, and over which it falls; where on it the contact is: tires that slide
+slow the turn, which still goes on there."""
+_TURNED_THERE = float(eased(np.array([_PLACE_AT]), _RISE)[0])
+"""Share of the whole rotation that is then done."""
 _SKID_RADPS, _SPIN_RADPS = 1.4, 3.0
 """Yaw rate of a skid, under the 1.5 rad/s that count, and at most, as in spins on dry roads."""
 _PEAK = _PLACE_AT / _TURNED_THERE / (1.0 - _RISE)
@@ -113,8 +115,8 @@ class Slide(NamedTuple):
 def slid(role: Role, path: Path, twist: Twist, speed_mps: float) -> Slide:
     """A path with the skid of its box.
 
-    A told skid begins so early that the box turns on evenly as it comes to its place. Another one turns as slowly as
-    the yaw rate allows, and keeps its angle from just before the place.
+    A told skid begins so early that the box still turns on a little as it comes to its place. Another one turns as
+    slowly as the yaw rate allows, and keeps its angle from just before the place.
     """
     place_m, angle = role.place.station_m, twist.angle_rad
     if not angle or not twist.skids:

@@ -98,3 +98,10 @@ def test_a_flank_that_slides_backward_meets_a_rail_along_the_road():
     rail = track(made, "O1")
     assert abs(math.cos(rail.heading_rad[0])) > 0.99, "its front faces the road, which runs north"
     assert 130 < turned_deg(mine, hit) < 230
+
+
+@pytest.mark.parametrize(("yaws", "side"), [("counterclockwise", "right"), ("clockwise", "left")])
+def test_what_its_flank_strikes_stops_its_turn(yaws, side):
+    _, mine, hit = thrown(yaws, "right", side)
+    heading = np.degrees(np.unwrap(mine.heading_rad))
+    assert abs(heading[-1] - heading[hit]) < 90.0
