@@ -37,7 +37,7 @@ EMERGENCY_SHARE = 0.6
 """Of the friction that braking before a crash takes: 5 m/s2 on dry roads, under the 7 of locked wheels."""
 _STANDING_MPS = 5.0
 _CRAWL_MPS = 1.0
-_LEAST_SLIDE_MPS = 4.0
+LEAST_SLIDE_MPS = 4.0
 """Speed that a slide is left before its contact."""
 _ABOUT = 0.98
 _CURVE_PER_M = 0.02
@@ -230,9 +230,13 @@ def _rising(along: Floats, limit: Floats, slope: float) -> Floats:
 
 def _slowed(along: Floats, squares: Floats, drag_mps2: Floats) -> Floats:
     """v^2 along a line less the work of a drag, down to a slow slide."""
-    work = np.concatenate(([0.0], np.cumsum((drag_mps2[1:] + drag_mps2[:-1]) * np.diff(along))))
-    slowed: Floats = np.maximum(squares - work, np.minimum(squares, _LEAST_SLIDE_MPS**2))
+    slowed: Floats = np.maximum(squares - drag_work(along, drag_mps2), np.minimum(squares, LEAST_SLIDE_MPS**2))
     return slowed
+
+
+def drag_work(along: Floats, drag_mps2: Floats) -> Floats:
+    """(n,) what a drag takes from v^2 up to each of (n,) distances along a line."""
+    return np.concatenate(([0.0], np.cumsum((drag_mps2[1:] + drag_mps2[:-1]) * np.diff(along))))
 
 
 def _limits(path: Path, more: tuple[Path, Path], pace: Pace) -> Floats:

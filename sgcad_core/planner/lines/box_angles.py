@@ -27,6 +27,8 @@ _SLIGHTLY = ((22.0, 0.0), (35.0, 0.04), (14.0, 0.06), (52.0, 0.1))
 """Angles of a skid in which the front still leads, degrees, with costs."""
 _FRONT_LEADS_RAD, _FAR_RAD, _SLIGHT_FLANK = math.radians(45.0), math.radians(200.0), 0.2
 """Angle up to which the front leads; that from which on a flank may also be met in a slight skid, and its cost."""
+_MOST_DEG = 300.0
+"""Nothing turns farther before its contact."""
 _OVERTURNS = ((80.0, 0.0),)
 """The same of one that overturns without a contact, over its leading flank."""
 _WAY_OFF_RAD = math.radians(12.0)
@@ -95,7 +97,7 @@ def _degrees(role: Role, leads_rad: float) -> list[tuple[float, float]]:
     found = [(math.degrees(leads_rad) + off, cost) for off, cost in near]
     if leads_rad > _FAR_RAD:
         found += [(deg, cost + _SLIGHT_FLANK) for deg, cost in _SLIGHTLY]
-    return sorted(found, key=lambda angle: angle[1])
+    return sorted((angle for angle in found if angle[0] < _MOST_DEG), key=lambda angle: angle[1])
 
 
 def _to_face(role: Role) -> float:

@@ -17,7 +17,7 @@ from sgcad_core.planner.actor_plan import Drift, Role, Swing, Twist, usual_speed
 from sgcad_core.planner.lines.axle_to_box import eased
 from sgcad_core.planner.lines.departures import shift_length_m
 from sgcad_core.planner.lines.path import Path, ramp, ramp_length_m
-from sgcad_core.planner.motion import EMERGENCY_SHARE, YAW_RADPS, Pace
+from sgcad_core.planner.motion import EMERGENCY_SHARE, LEAST_SLIDE_MPS, YAW_RADPS, Pace, drag_work
 from sgcad_core.records.course import sense_of
 
 _SWAYS_M = (0.9, -0.6)
@@ -46,9 +46,9 @@ _FASTEST_MPS = 30.0
 _TAKES = 0.5
 """Share of the kinetic energy that a slide takes before the contact, at most while the yaw rate allows."""
 _LEAST_SKID_M = 9.0
-_UNTURNED, _MOSTLY = 3.0, 0.85
+_UNTURNED, _MOSTLY, _STOPPED = 3.0, 0.85, 6.0
 """Cost of a contact before a told skid has begun, more than is given up for a rest; none from that share of its angle
-on."""
+on; cost of one behind the place at which it has slid to a stop."""
 
 
 def spins_out(role: Role) -> bool:
@@ -104,7 +104,7 @@ def slide_m(role: Role) -> float:
 # ------------------------------------------------------------------ into a contact
 class Slide(NamedTuple):
     """A path with its box turned in a skid; the deceleration of tires that slide across, (n,) m/s2 at its points;
-    the cost there of an encounter before it has turned; the station at which a told skid begins."""
+    the cost there of an encounter before it has turned or behind its stop; the station where a told skid begins."""
 
     path: Path
     drag_mps2: Floats | None = None
@@ -129,7 +129,8 @@ def slid(role: Role, path: Path, twist: Twist, speed_mps: float) -> Slide:
     slip = path.heading_rad + turned - path.tangents
     drag = DRIVING.sliding_mps2(role.surface) * np.abs(np.sin(slip)) * (turned != 0.0)
     unturned = _UNTURNED * np.clip(1.0 - turned / (_MOSTLY * angle), 0.0, 1.0)
-    return Slide(path.turned(turned), drag, unturned, place_m - before_m)
+    stopped = speed_mps**2 - drag_work(path.lengths, drag) < LEAST_SLIDE_MPS**2
+    return Slide(path.turned(turned), drag, unturned + _STOPPED * stopped, place_m - before_m)
 
 
 def skid_m(role: Role, angle_rad: float, speed_mps: float) -> float:
