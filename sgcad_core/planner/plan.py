@@ -1,8 +1,8 @@
 """From a behavior and a road network to timed motions in which the declared contact comes first.
 
-The public function of the planner is `plan`. Ordinary driving is tried first, then other speeds, lines beside the lane,
-and swerves; the notes of the plan list the changes. Boxes that slide against their direction of travel without a stated
-loss of control are the last resort: noted, and doubted by the validator `drivable`.
+Ordinary driving is tried first, then other speeds, lines beside the lane, and swerves; the notes of the plan list the
+changes. Boxes that slide against their direction of travel without a stated loss of control are the last resort: noted,
+and doubted by the validator `drivable`.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.departures import comes_back, departs, departure_station
 from sgcad_core.planner.lines.gore_lines import into_gores
 from sgcad_core.planner.lines.maneuver_course import course_of
-from sgcad_core.planner.lines.told_moves import off_and_back, off_on_one_side, off_to_median, with_room
+from sgcad_core.planner.lines.told_moves import off_and_back, off_on_one_side, off_to_median, unturned, with_room
 from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
 from sgcad_core.planner.motion import STEP_S, Motion, gentle_mps2
 from sgcad_core.planner.near_crash.near_miss import near_encounter
@@ -62,7 +62,6 @@ class Plan(Record):
 
     `contact` is the first overlap of any two; `realised`: it is between the first declared pair on the declared areas
     (without a declared contact: no boxes touch). `notes` list what was changed.
-
     `oddity`: how far from ordinary driving they meet, both actors' `Option.oddity` in sum: up to 0.4 for other speeds
     and swerves, more for skids, spins and leaving the road, 1 more where no road leads; 0 where not met as declared.
     """
@@ -98,6 +97,8 @@ def plan(
     first = behavior.contacts[0] if behavior.contacts else None
     observed = done.scene.first_contact()
     realised = observed is None if first is None else observed is not None and observed.is_of(first)
+    if not realised and any(course.yaws for course in courses.values()):  # another contact comes first in such a skid
+        return plan(behavior, graph, may_skid=may_skid, by_force=by_force, courses=unturned(courses))
     return Plan(
         trajectories=done.scene.trajectories(tuple(a.id for a in behavior.actors), courses), contact=observed,
         realised=realised, notes=tuple(dict.fromkeys(done.notes)), oddity=round(done.oddity, 3) if realised else 0.0,

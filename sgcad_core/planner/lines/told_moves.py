@@ -91,6 +91,11 @@ def off_to_median(told: Courses, behavior: BehaviorSpec, lines: Mapping[str, Cou
     return {**told, actor.id: replace(course, departs="left")} if crosses else told
 
 
+def unturned(told: Courses) -> Courses:
+    """The stated courses without their turns out of control."""
+    return {who: replace(course, yaws=None) for who, course in told.items()}
+
+
 def last_move(role: Role) -> Move | None:
     """The move in which it meets its end; None where no several moves are told, or its maneuver has a line of its
     own."""

@@ -11,7 +11,7 @@ from sgcad_core.metrics.labels.motion_label_match import Path
 from sgcad_core.metrics.labels.observed_crash import Crash, VehicleMotion
 from sgcad_core.metrics.road_departure import moves_made
 from sgcad_core.planner.lines.actor_course import find_course
-from sgcad_core.planner.lines.told_moves import off_and_back
+from sgcad_core.planner.lines.told_moves import off_and_back, unturned
 from sgcad_core.planner.plan import plan
 from sgcad_core.records.course import CourseTold, Move
 from sgcad_core.records.specs import size_m
@@ -89,3 +89,8 @@ def test_one_that_strikes_a_thing_off_the_road_and_then_a_vehicle_comes_back():
     assert found["V1"].moves == (OFF_LEFT, BACK)
     assert (found["V2"], found["V3"]) == (told["V2"], told["V3"])
     assert off_and_back(told, []) == told
+
+
+def test_courses_without_their_skids_keep_all_else():
+    told = {"V1": CourseTold(yaws="clockwise", lost_control=True, departs="left"), "V2": CourseTold(brakes=True)}
+    assert unturned(told) == {"V1": CourseTold(lost_control=True, departs="left"), "V2": CourseTold(brakes=True)}
