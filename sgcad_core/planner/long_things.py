@@ -59,6 +59,12 @@ def reach_m(by: Size, angle_rad: Floats) -> Floats:
     return reach
 
 
+def meets_m(by: Size, side: Area | None, angle_rad: Floats, *, turned: bool) -> Floats:
+    """(n,) how far from the center of a vehicle its corner meets the thing: at the usual angle of a side, or, where it
+    has `turned` in a skid, with the thing at some angle to its heading, metres."""
+    return reach_m(by, angle_rad) if turned else np.full(len(angle_rad), corner_m(by, side))
+
+
 def hand_of_side(side: Area | None, leaves: int) -> tuple[int, ...]:
     """On which hands of a vehicle the thing may lie that a side meets: 1 left, -1 right; `leaves`: the hand on which it
     leaves the road, 0 where it stays on it."""

@@ -182,7 +182,7 @@ def drive(
     if pace.slow_at_m is not None:
         limit = np.where(station >= pace.slow_at_m, np.minimum(limit, pace.slow_mps**2), limit)
     limit = _rising(along[::-1] * -1, limit[::-1], pace.braking_mps2)[::-1]
-    if pace.off is not None:
+    if pace.off is not None and drag_mps2 is None:  # tires that slide take more than the ground that wheels roll over
         limit = _rolling_off(pace, station, along, limit)
     if pace.starts_at_m is not None:
         ahead = station >= pace.starts_at_m

@@ -38,7 +38,7 @@ from sgcad_core.planner.lines.departures import leaving
 from sgcad_core.planner.lines.lost_control import entering_mps, slid
 from sgcad_core.planner.lines.path import Path, ramp, ramp_length_m, widened_bends
 from sgcad_core.planner.lines.turning import corner_lines
-from sgcad_core.planner.long_things import corner_m, reach_m, runs_along
+from sgcad_core.planner.long_things import meets_m, runs_along
 from sgcad_core.planner.motion import HARD_MPS2, Motion, Pace, drive, stand
 from sgcad_core.planner.stationary_actors import (
     any_angle,
@@ -200,8 +200,7 @@ def driving(option: Option) -> Motion:
 
 
 def _lines(option: Option, pace: Pace) -> tuple[Path, Path, bool]:
-    """As `_boxed`. Options whose line does not depend on the speed share it, since it is the dearest part of a
-    motion."""
+    """As `_boxed`; options whose line does not depend on the speed share it: the dearest part of a motion."""
     role, base, place = option.role, option.role.course.path, option.role.place.station_m
     of = option.drift, option.dodge, place, role.size, role.actor.kind, role.actor.maneuver
     if (bends := bool(option.twist.angle_rad) and not option.twist.skids) or of not in base.derived:
@@ -262,8 +261,7 @@ def in_the_way(option: Option, other: Option) -> Motion:
     if runs_along(role.actor):
         along = np.interp(path.s_m, road.s_m, road.heading_rad)
         out = along + option.twist.angle_rad + (facing(role.side) if role.side else 0.0) + math.pi
-        by, turned = other.role.size, other.twist.told
-        reach = reach_m(by, out - path.heading_rad) if turned else np.full(len(out), corner_m(by, other.role.side))
+        reach = meets_m(other.role.size, other.role.side, out - path.heading_rad, turned=other.twist.told)
         path = path.displaced((reach + role.size[0] / 2)[:, None] * np.column_stack((np.cos(out), np.sin(out))))
         path = replace(path, heading_rad=along)
     return placed_along(option.role, option.drift, option.twist, path, stand(path, other.role.place.station_m))
