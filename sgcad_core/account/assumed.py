@@ -124,10 +124,6 @@ def _asked(made: ExecutedCase, kind: str, of: str) -> tuple[str, Value, str]:
     if kind == "area":
         role = "striker" if crash.contacts[0].striker == of else "struck"
         return f"contacts.0.{role}_area", getattr(crash.contacts[0], f"{role}_area"), ""
-    if kind == "met":
-        mine = crash.first_contact(of)
-        other = None if mine is None else mine.struck if mine.striker == of else mine.striker
-        return f"vehicles.{of}.touches", other, f"{of} first touches {other or 'no road user'}"
     name = "maneuver" if kind == "maneuver" else "heading"
     return f"vehicles.{of}.{name}", getattr(crash.vehicle(of), name), ""
 

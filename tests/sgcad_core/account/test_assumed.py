@@ -33,7 +33,6 @@ def found(*questions: str, pictured: bool = False, text: str = TEXT, edits: tupl
     ("maneuver.V1", "vehicles.V1.maneuver", "V1 maneuver straight"),
     ("area.V2", "contacts.0.striker_area", "contact 1 striking side front"),
     ("area.V1", "contacts.0.struck_area", "contact 1 struck side left"),
-    ("met.V1", "vehicles.V1.touches", "V1 first touches V2"),
     ("junction", "junction.kind", "junction kind road without a junction"),
     ("turned.V2", "vehicles.V2.heading", "V2 heads E"),
 ])  # fmt: skip

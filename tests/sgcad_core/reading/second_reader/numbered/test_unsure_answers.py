@@ -33,11 +33,15 @@ def test_the_readers_own_answer_is_as_sure_as_it_says() -> None:
     assert unsure(maneuver_V1=Guess(value="lane_change_left", p=0.8)) == ()
 
 
-def test_the_rules_answer_is_unsure_where_a_better_one_could_not_be_drawn() -> None:
+def test_an_answer_of_the_reader_that_could_not_be_drawn_says_nothing_of_the_one_that_stands() -> None:
     alone = read("V1 was traveling east on a road. The front of V1 struck a pole.")
     passes = {"maneuver.V1": Guess(value="overtaking", p=0.9)}
     assert fused_with_guesses(alone, passes).crash == alone.crash
-    assert [one.p for one in unsure_answers(alone, alone, passes)] == [pytest.approx(0.1)]
+    assert unsure_answers(alone, alone, passes) == ()
+
+
+def test_what_is_met_first_is_not_judged() -> None:
+    assert unsure(met_V1=Guess(p=0.1)) == ()
 
 
 def test_what_a_model_made_of_an_answer_since_is_not_judged() -> None:
