@@ -11,13 +11,17 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar, Literal
 
-from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario
+import numpy as np
+
+from sgcad_core.case.records import Evidence, Finding, RoadNetwork, Scenario, Trajectory
 from sgcad_core.interfaces import Validator
 from sgcad_core.metrics.drivability import deepest_overlap, driving_peaks, first_touches
 from sgcad_core.records.specs import Actor, BehaviorSpec, size_m
 
 _MOVED_M = 0.1
 """A thing that ends further from where it stood was knocked down."""
+_SLIDES_S = 1.5
+"""As long before it rolls over a vehicle slides already, and nobody drives it."""
 
 
 class Drivable(Validator):
@@ -63,6 +67,13 @@ def _knocked_down(scenario: Scenario, behavior: BehaviorSpec) -> set[str]:
     }  # fmt: skip
 
 
+def _driven_until(motion: Trajectory, touch: int | None) -> int | None:
+    """The sample up to which a vehicle is driven: its first contact, or so long before its roll that it slides."""
+    rolls = np.flatnonzero(np.abs(motion.rolls) > 0.0)
+    slides = [max(int(np.searchsorted(motion.t_s, motion.t_s[k] - _SLIDES_S)), 1) for k in rolls[:1]]
+    return min([*slides, *([] if touch is None else [touch])], default=None)
+
+
 def _excesses(scenario: Scenario, behavior: BehaviorSpec) -> Iterator[tuple[Actor, tuple[str, ...]]]:
     """Vehicles with each quantity over its limit before their first contact, as text with value and limit."""
     sizes = {a.id: size_m(a) for a in behavior.actors}
@@ -71,8 +82,7 @@ def _excesses(scenario: Scenario, behavior: BehaviorSpec) -> Iterator[tuple[Acto
     for actor in behavior.actors:
         if not actor.record.wheeled or actor.id not in motions:
             continue
-        seen = driving_peaks(
-            motions[actor.id], sizes[actor.id][0], touches.get(actor.id), backing=actor.maneuver == "backing"
-        )
+        until = _driven_until(motions[actor.id], touches.get(actor.id))
+        seen = driving_peaks(motions[actor.id], sizes[actor.id][0], until, backing=actor.maneuver == "backing")
         if over := seen.excesses(behavior.surface):
             yield actor, over

@@ -140,3 +140,17 @@ def test_a_vehicle_may_lie_over_what_it_knocked_down(firm: bool, falls: bool, do
     })  # fmt: skip
     found = [f.where for f in judged(with_bush) if f.what == "two boxes overlap at rest"]
     assert found == (["V1 and O1"] if doubted else [])
+
+
+@pytest.mark.parametrize("rolls", [True, False])
+def test_one_that_rolls_over_slides_before_it_and_is_not_driven(rolls: bool) -> None:
+    scenario = crossed(("front", "left"))
+    first, second = scenario.planned
+    at = int(np.searchsorted(first.t_s, 2.0))
+    heading, roll = first.heading_rad.copy(), np.zeros(len(first.t_s))
+    heading[at:] += np.minimum(0.15 * np.arange(len(heading) - at), 1.2)
+    roll[at + 15 :] = 0.5 if rolls else 0.0
+    turned = first.model_copy(update={"heading_rad": heading, "roll_rad": roll})
+    moved = scenario.model_copy(update={"planned": (turned, second)})
+    driven = [f.where for f in judged(moved, CROSSED) if f.what != "two boxes overlap at rest"]
+    assert ("actor V1" in driven) == (not rolls)
