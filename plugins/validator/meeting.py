@@ -18,6 +18,7 @@ from sgcad_core.formats.sumo.net_xml import parse_net
 from sgcad_core.interfaces import Validator
 from sgcad_core.kinds import is_vehicle_id
 from sgcad_core.planner import plan
+from sgcad_core.planner.lines.turning import WIDE
 from sgcad_core.reading.crash_facts import CrashFacts, VehicleFacts
 from sgcad_core.reading.layout.road_ways import Way, ways_of
 from sgcad_core.reading.text.compass import angle_of
@@ -46,7 +47,8 @@ class Meeting(Validator):
         network, reading = evidence.network, evidence.report.reading
         if network is None or network.net_xml is None:
             return []
-        if artifact.oddity < self.odd_from or reading.lost_control:
+        ordinary = artifact.oddity < self.odd_from and not _swings_untold(artifact, reading.crash)
+        if ordinary or reading.lost_control:
             return []
         holds: tuple[Hold, ...] = ()
         if self.try_others and network.spec is not None:
@@ -58,6 +60,11 @@ class Meeting(Validator):
         seen = "; ".join(artifact.notes) or f"oddity {artifact.oddity:g}"
         return [Finding(source="meeting", severity=self.odd, what=what, where="contacts[0]", value=seen, remedy=remedy,
                         holds=holds)]  # fmt: skip
+
+
+def _swings_untold(scenario: Scenario, facts: CrashFacts) -> bool:
+    """Whether a vehicle swings wide in a turn that the report does not tell."""
+    return any(not v.maneuver_stated and f"{v.id} {WIDE}" in scenario.notes for v in facts.vehicles)
 
 
 @dataclass(frozen=True)
