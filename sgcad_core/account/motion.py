@@ -108,6 +108,7 @@ def _deeds(evasion: str) -> tuple[str, ...]:
 _LABELS: dict[str, Callable[[Value], VehicleLabel]] = {
     "maneuver": lambda value: VehicleLabel(maneuver=value),  # type: ignore[arg-type]
     "speed_mph": lambda value: VehicleLabel(speed_mph=float(value)),  # type: ignore[arg-type]
+    "pace": lambda value: VehicleLabel(pace=value),  # type: ignore[arg-type]
     "evasion.brakes": lambda _: VehicleLabel(evasion=("brake",)),
     "evasion.steers": lambda value: VehicleLabel(evasion=("steer" if value == "either" else f"steer_{value}",)),
     "evasion.none": lambda _: VehicleLabel(evasion=()),
@@ -205,8 +206,7 @@ def _comes(made: ExecutedCase, who: str, value: Value) -> Comparison:
     """Whether a vehicle drives, then stands until its first contact; or stands, and moves off before it."""
     speed = made.tracks[who].speed_mps[: VehicleMotion(made.crash, who).hit]
     stands = len(speed) > 1 and float(speed[-2]) < _STANDS_MPS < float(speed.max())
-    standing = Comparison(stands, why="it stands from the beginning")
-    return _from_rest(made, who, value) if value == "moves_off" else standing
+    return _from_rest(made, who, value) if value == "moves_off" else Comparison(stands, why="it stands all the time")
 
 
 def _straddles(made: ExecutedCase, who: str, value: Value) -> Comparison:

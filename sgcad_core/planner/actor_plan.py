@@ -19,6 +19,7 @@ from sgcad_core.planner.encounter.meeting_place import STANDING, TURNING, Place,
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.lines.path import Path, ramp
 from sgcad_core.planner.motion import ACCELERATION_MPS2
+from sgcad_core.planner.told_pace import BACKS_MPS, free_speed
 from sgcad_core.records.course import CourseTold, sense_of
 from sgcad_core.records.specs import Actor, Area, Surface
 from sgcad_core.units import MPS_PER_MPH
@@ -204,12 +205,11 @@ def is_standing(role: Role) -> bool:
 def usual_speed(role: Role) -> float:
     """Stated speed, else the limit as far as the kind of actor goes, m/s."""
     actor = role.actor
-    pace = actor.record.pace_mps
-    top = min(role.course.limit_mps, 26.0) if pace is None else pace
+    top = free_speed(role.told.pace, role.course.limit_mps, actor.record.pace_mps)
     if actor.speed_mph:
         return max(actor.speed_mph * MPS_PER_MPH, 1.0)
     if actor.maneuver == "backing":
-        return 2.5
+        return BACKS_MPS[role.told.pace]
     slow = role.told.slight and abs(role.place.angle_rad) > _ONE_WAY_RAD and not is_standing(role)
     slow = slow or (role.told.from_rest and actor.maneuver == "overtaking")
     return min(top, _SLIGHT_MPS if slow else 11.0 if actor.maneuver in TURNING else top)

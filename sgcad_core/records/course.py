@@ -23,6 +23,8 @@ Steering = Literal["left", "right", "either"]
 ComesTo = Literal["drives_up", "moves_up", "moves_off"]
 """How a vehicle comes to the stop at which it is struck: it drives there, or it moves up from another stop; or it has
 stood there and has just begun to move."""
+Pace = Literal["fast", "slow"]
+"""A speed that is told in words alone: above the limit, or far below it."""
 RestLane = Literal["own", "left", "right", "middle", "left_turn", "right_turn", "center_turn"]
 """A lane at rest by its word; own: the one in which the vehicle began."""
 DepartureSide = RoadSide | Literal["either"]
@@ -95,6 +97,8 @@ class CourseTold:
     """Whether all that is told of the contact speaks of a slight one."""
     corner: tuple[Area, Area] | None = None
     """The end and the flank of the corner at which it touches first: it does so at that part of either."""
+    pace: Pace | None = None
+    """How fast it drives before its first contact, where that is told in words."""
     signal_turned: bool = False
     """The state of its traffic signal is that to which it is told to have turned just before."""
     inside: bool = False

@@ -26,6 +26,10 @@ BRAKES_MPS2, BRAKES_MPS = 2.0, 1.2
 """Least deceleration over half a second, and least loss of speed, of visible braking."""
 STEERS_M, STEERS_RAD = 0.25, math.radians(3.0)
 """Least lateral offset, or heading against the lane, of visible steering."""
+_OVER_LIMIT_MPS, _SLOW_LIMIT_SHARE = 1.0, 0.6
+"""Least excess over the limit of what is told to be fast; share of the limit that what is slow may reach."""
+_BACKS_MPS = 3.0
+"""What one that backs seldom exceeds."""
 _LEFTWARD = ("lane_change_left", "crossing_centerline", "overtaking", "departing_road_left")
 _SPIN_S = 2.5
 
@@ -130,6 +134,22 @@ def _speed(label: VehicleLabel, one: VehicleMotion) -> bool:
     return bool((np.abs(one.speed - told) <= max(0.05 * told, 0.5)).any())
 
 
+def _keeps_pace(label: VehicleLabel, one: VehicleMotion) -> bool | None:
+    """Whether it drives faster than the limit of its first lane, or than one backs, at some time up to the contact, or
+    never much more than slowly; None of one that stands."""
+    fastest = float(one.speed.max(initial=0.0))
+    if one.home is None or fastest < BRAKES_MPS:
+        return None
+    backs = np.einsum("ij,ij->i", np.diff(one.before[:, :2], axis=0), _ahead(one.before[:-1])).sum() < 0
+    limit = _BACKS_MPS if backs else one.home[1].speed_mps
+    return fastest > limit + _OVER_LIMIT_MPS if label.pace == "fast" else fastest <= _SLOW_LIMIT_SHARE * limit
+
+
+def _ahead(pose: Floats) -> Floats:
+    """(n, 2) unit vectors to where (n, 3) poses head."""
+    return np.column_stack((np.cos(pose[:, 2]), np.sin(pose[:, 2])))
+
+
 def _evades(label: VehicleLabel, one: VehicleMotion) -> float:
     """The share of the stated evasive actions that are visible."""
     deeds = label.evasion or ()
@@ -193,6 +213,7 @@ _JUDGES: dict[str, _Judge] = {
     "maneuver_any": _Judge(lambda v: v.maneuver is not None, _maneuver),
     "lane_told": _Judge(lambda v: v.lane is not None, _lane),
     "speed_told": _Judge(lambda v: bool(v.speed_mph), _speed),
+    "pace": _Judge(lambda v: v.pace is not None, _keeps_pace),
     "evasion": _Judge(lambda v: bool(v.evasion), _evades),
     "no_evasion": _Judge(lambda v: v.evasion == (), lambda _, one: not _brakes(one)),
     "lost_control": _Judge(lambda v: bool(v.lost_control), _loses_control),

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, get_args
 from sgcad_core.errors import BadInput
 from sgcad_core.kinds import Maneuver
 from sgcad_core.metrics.rest_error import COMPASS_DEG
-from sgcad_core.records.course import Attitude, Spin, Where
+from sgcad_core.records.course import Attitude, Pace, Spin, Where
 
 DEEDS = ("brake", "steer", "steer_left", "steer_right")
 LANES = ("left", "right", "middle", "center_turn")
@@ -52,6 +52,7 @@ class VehicleLabel:
     maneuver: Maneuver | None = None
     lane: str | int | None = None
     speed_mph: float | None = None
+    pace: Pace | None = None
     evasion: tuple[str, ...] | None = None
     lost_control: bool | None = None
     rest: RestLabel = field(default_factory=RestLabel)

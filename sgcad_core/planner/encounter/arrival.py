@@ -17,6 +17,7 @@ from sgcad_core.planner.actor_plan import Role, usual_speed
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.motion import LEAD_S, STEP_S, Motion, Pace, drive, gentle_mps2
+from sgcad_core.planner.told_pace import free_speed
 from sgcad_core.units import MPS_PER_MPH
 
 STANDS_S = 1.5
@@ -31,7 +32,7 @@ CLOSING_MPS = 2.8
 """Speed over that of the one ahead at which the one behind runs into it in a slight blow: about 6 mph."""
 SLOW_MPH = 12
 """A told speed of one that runs into another's rear is that at the contact, up to this one."""
-_ALONG_RAD, _MOST_MPS, _SLOW_S = 0.6, 26.0, 0.4
+_ALONG_RAD, _SLOW_S = 0.6, 0.4
 _CLEAR_M = 0.3
 """Distance to the other one before the contact, at least."""
 _BEFORE_S = 0.5
@@ -61,7 +62,7 @@ def _running_up(this: _One, other: _One) -> _One:
     if not (behind and along and free and role.actor.record.wheeled) or final is None:
         return this
     at = float(motion.stations([own_s])[0])
-    cruise = max(role.actor.record.pace_mps or min(role.course.limit_mps, _MOST_MPS), final)
+    cruise = max(free_speed(role.told.pace, role.course.limit_mps, role.actor.record.pace_mps), final)
     slow_m = at - _SLOW_S * final
     pace = Pace(cruise, slow_at_m=slow_m, slow_mps=final, grip_mps2=role.grip_mps2)
     time, station = drive(motion.axle or motion.path, pace, at, (motion.path, role.course.path))

@@ -120,9 +120,9 @@ def courses_told(
 
 
 def before_near_miss(read: CoursesRead, *, of_thing: bool) -> CoursesRead:
-    """What is kept of courses where no contact comes about: a loss of control with its spin; of one that nearly strikes
-    a thing its way off the road too. Evasions are told apart from these."""
-    kept = ("lost_control", "spin", "spin_deg", *(("departs", "moves") if of_thing else ()))
+    """What is kept of courses where no contact comes about: the pace, a loss of control with its spin; of one that
+    nearly strikes a thing its way off the road too. Evasions are told apart from these."""
+    kept = ("lost_control", "spin", "spin_deg", "pace", *(("departs", "moves") if of_thing else ()))
     courses = {who: CourseTold(**{name: getattr(told, name) for name in kept}) for who, told in read.courses.items()}
     sources = {name: source for name, source in read.sources.items() if name.split()[1].split(".")[0] in kept}
     return CoursesRead({who: told for who, told in courses.items() if not told.empty}, sources, read.places)
@@ -140,6 +140,9 @@ def _read(one: _CourseReader, segment: Segment, impact: int, event: str, *, late
     if segment.role not in RETOLD and early:
         if m := rule("course_evasion.in_junction").search(before):
             one.add("inside", True, Source(segment.number, m[0], "course_evasion.in_junction"))
+        for pace, m in _done(before, of_role("pace")):
+            if not rule("speeds.pace_of_other").search(before[: m.end()]):
+                one.add("pace", pace.yields["pace"], Source(segment.number, m[0], pace.id))
         _read_departure(one, segment, before)
         _read_roll(one, segment, before, early=True)
     if behind:
