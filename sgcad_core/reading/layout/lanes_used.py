@@ -112,9 +112,9 @@ def _needs(crash: CrashFacts) -> Iterator[_Need]:
             yield _Need(v.heading, _beyond_passed(v, crash), leftward=True, why=why)
         if word == CENTER:
             yield _Need(v.heading, center=True, why=f"{v.id} is in the center turn lane")
-        elif word in ("left_turn", "right_turn"):
-            turn: Turn = "left" if word == "left_turn" else "right"
-            yield _Need(v.heading, turn=turn, why=f"{v.id} is in the {turn}-turn lane")
+        elif v.lane_word in ("left_turn", "right_turn"):
+            turn: Turn = "left" if v.lane_word == "left_turn" else "right"
+            yield _Need(v.heading, abs(v.lane or 1), turn=turn, why=f"{v.id} is in the {turn}-turn lane")
         elif v.lane or word in ("left", "middle"):
             lane = f"lane {abs(v.lane)} from the {'right' if v.lane > 0 else 'left'}" if v.lane else f"the {word} lane"
             yield _Need(v.heading, min(_own(v), MOST), by_word=word == "left", why=f"{v.id} is in {lane}")
@@ -169,7 +169,8 @@ def _changed(need: _Need, leg: Leg, legs: dict[Compass, Leg], facts: RoadFacts) 
             ahead.model_copy(update={"lanes_in": ahead.lanes_in - 1, "lanes_out": ahead.lanes_out + 1}),
         )
     elif need.turn and not plain:
-        yield leg.bearing, _with_turn_lane(leg, need.turn, _exits(need.way, legs))
+        many = max(lanes.turns.get("any", ()).count(need.turn) for lanes in (*_told(facts, leg), LaneFacts()))
+        yield leg.bearing, _with_turn_lanes(leg, need.turn, _exits(need.way, legs), max(need.lanes, many))
     else:
         least = max(need.lanes, 2) if need.turn else need.lanes
         yield leg.bearing, _with_lanes(leg, least)
@@ -231,20 +232,21 @@ def _exits(way: Compass, legs: Iterable[Compass]) -> set[str]:
     return {"through" if a in _AHEAD else "right" if a < 180 else "left" for a in angles}
 
 
-def _with_turn_lane(leg: Leg, turn: Turn, exits: set[str]) -> Leg:
-    """A lane for this turn alone; none where there is one already, or a center turn lane, or no such way out."""
-    if turn in leg.turns_in or turn not in exits or (turn == "left" and leg.center_turn_lane):
+def _with_turn_lanes(leg: Leg, turn: Turn, exits: set[str], many: int) -> Leg:
+    """So many lanes for this turn alone; none where there are as many, or a center turn lane, or no such way out."""
+    more = many - leg.turns_in.count(turn)
+    if more <= 0 or turn not in exits or (turn == "left" and leg.center_turn_lane):
         return leg
     if "through" not in exits:
-        lanes = max(leg.lanes_in, len(exits))
+        lanes = max(leg.lanes_in, len(exits), many)
         left = lanes // 2 if "left" in exits and "right" in exits else lanes * ("left" in exits)
         return leg.model_copy(update={"lanes_in": lanes, "turns_in": ("right",) * (lanes - left) + ("left",) * left})
     uses = list(leg.turns_in) or _usual(leg.lanes_in, exits)
     shared = _LEFT_USES if turn == "left" else _RIGHT_USES
     end = -1 if turn == "left" else 0
     uses[end] = shared.get(uses[end], uses[end])
-    uses = [*uses, turn] if turn == "left" else [turn, *uses]
-    return leg.model_copy(update={"lanes_in": min(leg.lanes_in + 1, MOST), "turns_in": tuple(uses[:MOST])})
+    uses = [*uses, *[turn] * more] if turn == "left" else [*[turn] * more, *uses]
+    return leg.model_copy(update={"lanes_in": min(leg.lanes_in + more, MOST), "turns_in": tuple(uses[:MOST])})
 
 
 def _usual(lanes: int, exits: set[str]) -> list[Turn]:

@@ -165,6 +165,8 @@ def read_lane(motion: VehicleMotion, text: str, from_median: bool = False) -> No
         motion.lane = _counted(m, from_median)
         if motion.lane is None:
             motion.lane_word = "center_turn" if center else _lane_word(m)
+        elif m.group("use"):
+            motion.lane_word = f"{m.group('use').lower()}_turn"
         motion.read("lane", m.group(), _LANE.id)
         return
 
@@ -190,6 +192,10 @@ def _counted(m: re.Match[str], from_median: bool) -> int | None:
     if number:
         told = NUMBERS.get(number.lower()) or (int(number) if number.isdigit() else None)
         return -told if from_median and m.group("num") and told else told
+    if m.group("use"):  # the lanes for turns to a hand are the outermost ones on that hand
+        many = NUMBERS.get(m.group("of").lower()) or (int(m.group("of")) if m.group("of").isdigit() else 1)
+        place = 1 if m.group("end").lower() == m.group("use").lower() else many
+        return place if m.group("use").lower() == "right" else -place
     if m.group("beside") or m.group("curb"):
         return -1 if (m.group("beside") or "").lower() == "left" else 1
     if m.group("inner"):

@@ -92,3 +92,12 @@ def test_the_spare_lane_of_an_odd_count_goes_to_who_is_in_it() -> None:
 def test_a_lane_beyond_half_of_a_count_makes_it_that_of_one_direction() -> None:
     found = legs("V1 was westbound in lane 4 of a 5 lane highway. V2 was westbound in lane 2." + HIT)
     assert {leg.lanes_in for leg in found.values()} == {5}
+
+
+@pytest.mark.parametrize(("told", "left"), [
+    ("the rightmost of two left turn lanes", 2), ("the leftmost of three left-turn-only lanes", 3),
+    ("the left-turn lane", 1),
+])  # fmt: skip
+def test_as_many_turn_lanes_are_laid_as_are_told(told: str, left: int) -> None:
+    text = f"V1 was traveling north in {told} and turned left. V2 was traveling south." + CROSSING + HIT
+    assert legs(text)["S"].turns_in.count("left") == left
