@@ -13,7 +13,7 @@ from sgcad_core.account.odd_scenes import odd_scenes
 from sgcad_core.account.places import map_items, place_items
 from sgcad_core.account.records import Account, Disagreement, Item
 from sgcad_core.account.second_opinion import weighed
-from sgcad_core.account.told_places import signal_items, told_place_items
+from sgcad_core.account.told_places import parking_items, signal_items, told_place_items
 from sgcad_core.account.unread_clauses import unread_clauses
 from sgcad_core.account.unread_text import unread_items
 from sgcad_core.account.verdict import (
@@ -66,6 +66,7 @@ def _told(made: ExecutedCase) -> Iterator[Item]:
     yield from unread_items(made)
     yield from told_place_items(made)
     yield from signal_items(made)
+    yield from parking_items(made)
     yield from map_items(made)
 
 

@@ -14,6 +14,7 @@ from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.records import Item
 from sgcad_core.execution.signals import TURNED_S
 from sgcad_core.geometry.distances import distance_to
+from sgcad_core.metrics.lane_places import lane_steps
 from sgcad_core.metrics.rest_error import COMPASS_DEG
 from sgcad_core.reading.language import rule, values
 from sgcad_core.reading.text.normalise import Sentence
@@ -28,6 +29,8 @@ _ON_LANE_M = 2.0
 _MEANS = {"turn_left": "left", "turn_right": "right", "u_turn": "u_turn"}
 _JUST_S = TURNED_S + 2.0
 """A signal that has shown its state for no longer has just turned to it."""
+_PARKS = ("beside", "beyond", "off")
+"""Places of a motion that are no lane for cars."""
 _APPROACH_S = 2.0
 """Time before its first contact in which a circulating vehicle must be on the circle."""
 
@@ -83,6 +86,20 @@ def _signal_ahead(made: ExecutedCase, who: str) -> Connection | None:
     links = [c for c in made.graph.leaving(edge_id(actor.road, actor.direction)) if c.light]
     meant = _MEANS.get(actor.maneuver or "", "through")
     return next((c for c in links if c.direction == meant), next(iter(links), None))
+
+
+# ------------------------------------------------------------------ parking
+def parking_items(made: ExecutedCase) -> Iterator[Item]:
+    """A vehicle of which no more is told before the first contact than that it leaves a parking place starts beside the
+    lanes."""
+    before = [act for act in made.reading.timeline if act.phase == "before" and not act.meant]
+    last = {act.actor: act for act in before}
+    for act in last.values():
+        if act.kind == "leaving_parking" and act.actor in made.tracks:
+            starts = lane_steps(made.graph, made.crash.paths[act.actor].pose[:2]).places[0]
+            field, why = f"vehicles.{act.actor}.leaves_parking", "it starts in a lane, not in a parking place"
+            found = made.item(starts in _PARKS, field, True, starts, why=why)
+            yield found.model_copy(update={"start": act.start, "end": act.end})
 
 
 # ------------------------------------------------------------------ signs

@@ -88,6 +88,8 @@ def _add_maneuvers(score: dict[int, float], crash: CrashTold, inferred: CrashInf
         if maneuver == "parked" and not _on_foot(crash, a, b):
             score[0] += 2.5
             score[180] += 2.0
+        if motion.has_cue("leaving_parking", 3) and motion.origin is None and not _on_foot(crash, a, b):
+            score[0] += 2.0  # it stood at the curb of the lane that it drives into
         if maneuver == "crossing_centerline":
             score[180] += 1.5
         if motion.origin == RAMP or maneuver in ("lane_change_left", "lane_change_right", "merge"):

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from sgcad_core.account.inputs import ExecutedCase
-from sgcad_core.account.told_places import signal_items
-from sgcad_core.case.records import Execution, sizes_of
+from sgcad_core.account.told_places import parking_items, signal_items
+from sgcad_core.case.records import Execution, Trajectory, sizes_of
 from sgcad_core.execution.contact import first_contact
 from sgcad_core.execution.scenario import compile_scenario
 from sgcad_core.reading.reading import read
@@ -43,3 +44,21 @@ def test_a_signal_that_turned_must_not_have_shown_its_state_for_long(turned, kin
     assert [(what, field) for what, field, _ in found] == [
         ("has", "vehicles.V1.signal"), (kind, "vehicles.V1.signal_turned"),
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("aside_m", "kind"), [(0.0, "lacks"), (4.0, "has")])
+def test_one_that_leaves_a_parking_place_starts_beside_the_lanes(aside_m: float, kind: str) -> None:
+    scenario = compile_scenario(CRASH, compiled("signal"))
+    made = ExecutedCase(
+        read("V1 was northbound and V2 pulled out of a parking space. The front of V1 struck the left side of V2."),
+        compiled("signal"), scenario,
+        Execution(simulator="none", trajectories=tuple(_aside(t, aside_m) for t in scenario.planned), contact=None),
+    )  # fmt: skip
+    assert [(item.kind, item.subject) for item in parking_items(made)] == [(kind, "V2")]
+
+
+def _aside(track: Trajectory, by_m: float) -> Trajectory:
+    """A motion that much farther to the right of its heading."""
+    right = track.heading_rad - np.pi / 2
+    there = {"x_m": track.x_m + by_m * np.cos(right), "y_m": track.y_m + by_m * np.sin(right)}
+    return track.model_copy(update=there)
