@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from sgcad_core.geometry.plane import Floats, Size, gaps_where_near
 from sgcad_core.metrics.rest_error import whirls
 from sgcad_core.planner.aftermath.ground_friction import RunOut
+from sgcad_core.planner.aftermath.impact import Body
 from sgcad_core.planner.aftermath.rollover import barrel_costs
 from sgcad_core.planner.aftermath.second_contact import MISSED, NOT_AGAIN, WRONG_SIDE, Sides, wrong_sides
 from sgcad_core.records.course import CourseTold
@@ -52,6 +53,9 @@ _DRIVES_ON_S, _DRIVES_ON_PER_M = (1.0, 1.8), 0.06
 """Time for which an able driver goes on before braking, with freely rolling wheels and in no tighter bend: to the
 shoulder, out of the junction."""
 _BEFORE_IT_ROLLS_PER_M = 0.03
+_ROLLS_BACK, _ROLLED_BACK_SHARE = 0.6, 0.3
+"""Cost of a way on which a vehicle that a blow threw back rolls on freely: its wheels are bent, and nobody drives it
+there; and the share of the friction below which it does."""
 _EACH_WAY = 2
 """Number of run-outs of each sort that are compared for two vehicles that meet again."""
 _TURNS_FREELY = 0.7
@@ -226,6 +230,14 @@ def oddities(runs: Sequence[RunOut], grip: float, usual_share: float) -> Floats:
             for r in runs
         ]
     )
+
+
+def rolling_back(runs: Sequence[RunOut], body: Body, grip: float) -> Floats:
+    """(n,) costs of run-outs on which a body that moves backward hardly slows."""
+    back = body.vx * math.cos(body.heading) + body.vy * math.sin(body.heading) < -_MOVES_MPS
+    freely = [r.rolls_s > 0.0 or r.along_mps2 < _ROLLED_BACK_SHARE * grip for r in runs]
+    cost: Floats = _ROLLS_BACK * back * np.array(freely, dtype=float)
+    return cost
 
 
 def loops(ways: Floats, step_s: float) -> Floats:

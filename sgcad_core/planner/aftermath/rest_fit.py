@@ -36,6 +36,7 @@ from sgcad_core.planner.aftermath.rest_candidates import (
     loops,
     odd_ways,
     oddities,
+    rolling_back,
 )
 from sgcad_core.planner.aftermath.rollover import rolls_over
 from sgcad_core.planner.aftermath.second_contact import WRONG_SIDE, missed_again
@@ -186,8 +187,9 @@ class RestFit:
             for one, drag, on in zip(released, drags, upright, strict=True)
         ]
         each = run_out_paths(released, drags, runs, end_s, _COARSE_S)
-        for name, drag, mine, ways in zip(free, drags, runs, each, strict=True):
+        for name, one, drag, mine, ways in zip(free, released, drags, runs, each, strict=True):
             odd = oddities(mine, drag.across, 0.0 if name in self.rolling else _USUAL_SHARE) + loops(ways, _COARSE_S)
+            odd = odd + rolling_back(mine, one.body, drag.across)
             if not scene.again:  # there are few ways to a second contact
                 odd = odd + odd_ways(self.wanted[name], ways, self.surface)
             judge = partial(self._costs, name, self.wanted[name])

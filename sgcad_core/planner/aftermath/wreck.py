@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from sgcad_core.geometry.plane import Floats
-from sgcad_core.planner.aftermath.blow import Blow, blow, lacking, part
+from sgcad_core.planner.aftermath.blow import Blow, blow, lacking, most_restitution, part
 from sgcad_core.planner.aftermath.crush import STEP_LONGEST_S, Crushes
 from sgcad_core.planner.aftermath.ground_friction import apply_friction
 from sgcad_core.planner.aftermath.hitch import Hitch, draw_together, equalize_velocities
@@ -268,7 +268,8 @@ class Wreck:
             return 0.0
         closing = approach(a.body, b.body, at, seen.normal)
         left = max(self._held_s(a, b, sample), _SHORTEST_LEFT_S)
-        return min(self.restitution, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
+        most = min(self.restitution, most_restitution(closing))
+        return min(most, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
 
     def _keep_seen(self, a: Mover, b: Mover, seen: Separation, points: list[Point], sample: int) -> None:
         """Keeps the bodies of a new touch together until the next sample: crushing bodies hold for 0.1 s."""

@@ -12,6 +12,7 @@ from itertools import chain, islice, zip_longest
 from operator import itemgetter
 from typing import NamedTuple
 
+from sgcad_core.planner.actor_plan import comes_against
 from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact
 from sgcad_core.planner.encounter.blow_turns import misturned, turns_told
 from sgcad_core.planner.encounter.encounter_search import along_sides
@@ -46,6 +47,8 @@ _SPEEDS_SHORT = ((0.5, 0.5), (0.35, 0.35), (0.7, 0.7))
 _SPEEDS_ASIDE = ((0.5, 1.1), (1.1, 0.5))
 """The same where the side on which one of them comes to rest is told: the slower one hardly turns the other one's
 way."""
+_SPEEDS_HEAD_ON = ((1.0, 1.0), (0.9, 1.1), (1.1, 0.9), (0.8, 0.8), (1.2, 1.2), (0.6, 0.6))
+"""Those of two fronts that come against each other: nothing untold makes one of them much faster."""
 _PLACES = 5
 """Places along the stated sides, at each of the speeds."""
 _MOST, _MOST_AGAIN = 12, 14
@@ -98,6 +101,8 @@ def _speeds(found: Encounter, *, again: bool) -> tuple[tuple[float, float], ...]
     if again:
         return (*_SPEEDS, *_SPEEDS_AGAIN)
     rests = [option.role.told.rest for option in (found.first, found.second)]
+    if found.meeting.sides == ("front", "front") and comes_against(found.first.role):
+        return _SPEEDS_HEAD_ON
     if any(rest.against or (rest.distance_m is not None and rest.distance_m <= AT_IMPACT_M) for rest in rests):
         return (*_SPEEDS_SHORT, *_SPEEDS)
     aside = any(rest.side is not None and rest.where == "off_road" for rest in rests)

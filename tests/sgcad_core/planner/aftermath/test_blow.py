@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sgcad_core.planner.aftermath.blow import blow, lacking, part
+from sgcad_core.planner.aftermath.blow import blow, lacking, most_restitution, part
 from sgcad_core.planner.aftermath.ground_friction import Drag
 from sgcad_core.planner.aftermath.impact import Body, body
 from sgcad_core.planner.aftermath.wreck import Wreck
@@ -34,6 +34,15 @@ def test_a_pole_before_one_half_turns_a_car_to_that_side(mps, left_m, restitutio
     assert after[2] * left_m >= 0.0
     assert abs(after[2]) > 0.1 * mps * abs(left_m) - 1e-9
     assert (car.vx, car.vy, car.spin) == (mps, 0.0, 0.0)
+
+
+def test_two_that_meet_fast_head_on_are_hardly_thrown_back() -> None:
+    slow, fast = (
+        blow((moving(v), moving(v, math.pi, 4.7)), ((2.35, 0.0), (1.0, 0.0)), 0.3, 0.5).first[0] for v in (1.0, 20.0)
+    )
+    assert slow == pytest.approx(-0.3, abs=0.02)
+    assert -2.5 < fast < 0.0
+    assert most_restitution(3.0) > 2 * most_restitution(9.0)
 
 
 def test_what_is_lacking_is_what_makes_a_body_move_as_wanted() -> None:
