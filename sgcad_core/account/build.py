@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from sgcad_core.account.assumed import assumed_items, unsure_items
-from sgcad_core.account.contacts import actor_items, contact_items
+from sgcad_core.account.contacts import actor_items, at_contact_items, contact_items
 from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.motion import motion_items
 from sgcad_core.account.notes import Note
@@ -61,6 +61,7 @@ def account_of(
 def _told(made: ExecutedCase) -> Iterator[Item]:
     yield from actor_items(made)
     yield from contact_items(made)
+    yield from at_contact_items(made)
     yield from motion_items(made)
     yield from place_items(made)
     yield from unread_items(made)

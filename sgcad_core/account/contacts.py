@@ -22,11 +22,16 @@ from sgcad_core.records.acts import steering_of
 from sgcad_core.records.course import ImpactTold
 from sgcad_core.records.specs import Area
 from sgcad_core.roads.areas.roadside import roadsides
+from sgcad_core.units import MPS_PER_MPH
 
 _OPEN_SIDES = 4
 _EPS_S = 1e-6
 _EVADES_BEHIND_S = 2.5
 """Time behind the nearest approach of a near crash in which an evasion may still be seen."""
+_SPEED_SHARE, _SPEED_MPH = 0.1, 5.0
+"""Tolerance of a told speed at the contact: reports give spans of 10 mph."""
+_STANDS_MPS, _STILL = 0.5, 10
+"""Speed of what stands, and the samples (0.5 s) before the contact in which it does."""
 
 
 def actor_items(made: ExecutedCase) -> Iterator[Item]:
@@ -69,6 +74,24 @@ def _kind(made: ExecutedCase, name: str, kinds: Mapping[str, str]) -> Iterator[I
     if towing and is_stated(towing):
         longer = made.sizes[name][0] > actor_kind(kinds[name]).length_m + 1 or any(a[0] == "T" for a in made.tracks)
         yield made.item(longer, towing.field, True, why="it tows nothing")
+
+
+def at_contact_items(made: ExecutedCase) -> Iterator[Item]:
+    """What is told of vehicles at their first contact: a speed, and that one stands there after its maneuver."""
+    for who, course in made.reading.crash.courses.items():
+        if who not in made.tracks:
+            continue
+        before = made.tracks[who].speed_mps[: VehicleMotion(made.crash, who).hit]
+        fact = made.told.get(f"vehicles.{who}.speed_mph")
+        if course.speed_at_impact and fact is not None and isinstance(fact.value, int | float) and len(before):
+            seen = float(before[-1]) / MPS_PER_MPH
+            right = abs(seen - fact.value) <= max(_SPEED_SHARE * fact.value, _SPEED_MPH)
+            why = f"it drives {seen:.0f} mph at its first contact"
+            yield made.item(right, fact.field, fact.value, round(seen), why=why)
+        if course.stops:
+            still = len(before) > _STILL and float(before[-_STILL:].max()) < _STANDS_MPS < float(before.max())
+            text, why = f"{who} stops in the way", "it does not come to a stop before its first contact"
+            yield made.item(still, f"vehicles.{who}.stops", True, why=why, text=text)
 
 
 def contact_items(made: ExecutedCase) -> Iterator[Item]:

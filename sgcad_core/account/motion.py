@@ -1,5 +1,4 @@
-"""Stated motion of vehicles against executed motion, fact by fact, with the criteria of `sgcad score`. An absent
-vehicle is one lacking item, its motion none. Angles are clockwise degrees from north."""
+"""Stated motion of vehicles against executed one, with the criteria of `sgcad score`. Angles: clockwise from north."""
 
 from __future__ import annotations
 
@@ -22,7 +21,7 @@ from sgcad_core.metrics.road_departure import hand_of, left_road, moves_made
 from sgcad_core.metrics.told_lanes import LANE_WORDS, TURN_LANES, ToldLane, told_lane
 from sgcad_core.reading.text.compass import COMPASS, angle_of, compass_of_angle
 from sgcad_core.records.acts import steering_of
-from sgcad_core.records.course import DepartureSide, Move
+from sgcad_core.records.course import CourseTold, DepartureSide, Move
 from sgcad_core.records.facts import Fact, Value
 from sgcad_core.roads.lane_positions import position
 
@@ -71,9 +70,7 @@ def _moves(made: ExecutedCase, who: str, moves: Sequence[Move]) -> Iterator[Item
 def judged(made: ExecutedCase, who: str, name: str, fact: Fact) -> Comparison | None:
     """A vehicle's fact of motion compared with the execution; None: nothing to compare with."""
     course = made.reading.crash.courses.get(who)
-    if course and course.moves and (name == "evasion.steers" or fact.value in OVER_A_LINE):
-        return None
-    if course and name == "departs" and _comes_back(course.moves):
+    if course and _judged_otherwise(made, who, course, name, fact.value):
         return None
     if name == "yaws" and not (course and course.moves):
         own = [Move("yaws", fact.value)]  # type: ignore[arg-type]
@@ -87,10 +84,13 @@ def judged(made: ExecutedCase, who: str, name: str, fact: Fact) -> Comparison | 
     return Comparison(all(m >= 1.0 for m in marks.values())) if marks else None
 
 
-def _comes_back(moves: Sequence[Move]) -> bool:
-    """Whether a vehicle leaves the road and does something else before its contact; the moves are then judged."""
-    driven = [move.kind for move in moves if move.kind != "yaws"]
-    return "departs" in driven and driven[-1] != "departs"
+def _judged_otherwise(made: ExecutedCase, who: str, course: CourseTold, name: str, value: Value) -> bool:
+    """Whether something else is judged for a fact: each of several moves, the moment of a speed, the told slowing."""
+    driven = [move.kind for move in course.moves if move.kind != "yaws"]
+    back, vehicle = "departs" in driven and driven[-1] != "departs", made.reading.crash.vehicle(who)
+    slows = name == "evasion.none" and vehicle is not None and vehicle.maneuver == "slowing"
+    moved = bool(course.moves) and (name == "evasion.steers" or value in OVER_A_LINE)
+    return slows or moved or (name == "departs" and back) or (name == "speed_mph" and course.speed_at_impact)
 
 
 def _marks(made: ExecutedCase, who: str, label: VehicleLabel) -> Mapping[str, float]:
@@ -195,10 +195,10 @@ def _attitude(made: ExecutedCase, who: str, value: Value) -> Comparison | None:
 
 def _from_rest(made: ExecutedCase, who: str, value: Value) -> Comparison:
     """Whether a vehicle stands before its first contact and then moves on into it."""
-    one = VehicleMotion(made.crash, who)
-    speed = made.tracks[who].speed_mps[: one.hit + 1]
+    speed = made.tracks[who].speed_mps[: VehicleMotion(made.crash, who).hit + 1]
     slowest = float(speed.min())
-    starts = slowest < _STANDS_MPS and float(speed[-2:].max()) > _STANDS_MPS
+    stops = (course := made.reading.crash.courses.get(who)) is not None and course.stops
+    starts = slowest < _STANDS_MPS and float(speed[int(speed.argmin()) if stops else -2 :].max()) > _STANDS_MPS
     return Comparison(starts, round(slowest, 1), f"it never drives slower than {slowest:.1f} m/s before its contact")
 
 

@@ -217,12 +217,12 @@ def usual_speed(role: Role) -> float:
 
 def speed_there(role: Role) -> float:
     """Usual speed at the meeting place: turning traffic has slowed down."""
-    if is_standing(role):
+    if is_standing(role) or role.told.stops:
         return 0.0
     speed = min(usual_speed(role), 6.5) if role.actor.maneuver in TURNING else usual_speed(role)
     if role.told.from_rest:
         speed = min(speed, math.sqrt(2 * ACCELERATION_MPS2 * max(role.place.station_m - start_m(role), 1.0)))
-    return BRAKED_TO * speed if role.told.brakes else speed
+    return BRAKED_TO * speed if role.told.brakes and not role.told.speed_at_impact else speed
 
 
 def mismatch(role: Role) -> float:

@@ -56,6 +56,10 @@ class Pace:
     """Stands here before its clock runs on."""
     slow_at_m: float | None = None
     slow_mps: float = 0.0
+    least_mps: float | None = None
+    """The speed down to which it slows further from there on; None: it keeps its speed."""
+    stops_at_m: float | None = None
+    """Stops here and stands."""
     grip_mps2: float = DRIVING.friction_mps2(None)
     """What tires transmit on the surface."""
     hard: bool = False
@@ -75,6 +79,12 @@ class Pace:
     def braking_mps2(self) -> float:
         """Deceleration that is planned with."""
         return EMERGENCY_SHARE * self.grip_mps2 if self.brakes else self.within(BRAKING_MPS2, "braking")
+
+    @property
+    def slows_on_m(self) -> float:
+        """How far behind `slow_at_m` it still slows."""
+        least = self.slow_mps if self.least_mps is None else self.least_mps
+        return (self.slow_mps**2 - least**2) / (2 * self.braking_mps2)
 
     def within(self, usual_mps2: float, use: str) -> float:
         """A usual acceleration, or as much of it as the surface allows."""
@@ -176,11 +186,17 @@ def drive(
     The highest speed that keeps every limit on the driven line and never needs more than the usual accelerations: over
     v^2 an acceleration is a slope, so each pass is a running minimum.
     """
-    station = _refined(path.s_m, pace.starts_at_m)
+    station = _refined(path.s_m, pace.starts_at_m, pace.stops_at_m)
     along = np.interp(station, path.s_m, path.lengths)
     limit = np.interp(station, path.s_m, _limits(path, more or (path, path), pace)) ** 2
     if pace.slow_at_m is not None:
-        limit = np.where(station >= pace.slow_at_m, np.minimum(limit, pace.slow_mps**2), limit)
+        on_m = np.clip(along - np.interp(pace.slow_at_m, path.s_m, path.lengths), 0.0, pace.slows_on_m)
+        slow = pace.slow_mps**2 - 2 * pace.braking_mps2 * on_m
+        limit = np.where(station >= pace.slow_at_m, np.minimum(limit, slow), limit)
+    if pace.stops_at_m is not None:
+        driven = station <= pace.stops_at_m
+        station, along, limit = station[driven], along[driven], limit[driven]
+        limit[-1] = 0.0
     limit = _rising(along[::-1] * -1, limit[::-1], pace.braking_mps2)[::-1]
     if pace.off is not None and drag_mps2 is None:  # tires that slide take more than the ground that wheels roll over
         limit = _rolling_off(pace, station, along, limit)
@@ -249,9 +265,8 @@ def _limits(path: Path, more: tuple[Path, Path], pace: Pace) -> Floats:
     return np.clip(curve, _CRAWL_MPS, pace.cruise_mps)
 
 
-def _refined(station: Floats, start_m: float | None) -> Floats:
-    """Stations with a few more behind a standing start, where time runs fast over distance."""
-    if start_m is None:
-        return station
-    near = start_m + np.array([0.0, 0.01, 0.03, 0.06, 0.1, 0.17, 0.25, 0.35])
-    return np.unique(np.concatenate((station, near)))
+def _refined(station: Floats, start_m: float | None, stop_m: float | None = None) -> Floats:
+    """Stations with a few more behind a standing start and before a stop, where time runs fast over distance."""
+    near = np.array([0.0, 0.01, 0.03, 0.06, 0.1, 0.17, 0.25, 0.35])
+    added = [at + way * near for at, way in ((start_m, 1.0), (stop_m, -1.0)) if at is not None]
+    return np.unique(np.concatenate((station, *added))) if added else station

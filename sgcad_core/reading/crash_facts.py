@@ -22,6 +22,7 @@ from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.maneuvers import meant_turn
 from sgcad_core.reading.motion.motion_record import Access, VehicleMotion
 from sgcad_core.reading.text.conditions import Conditions
+from sgcad_core.reading.text.speeds import with_impact_speeds
 from sgcad_core.records.course import ComesTo, Courses, CourseTold, Hand, ImpactTold
 from sgcad_core.records.specs import ActorKind, Area, Compass, Light, Maneuver, Surface, Weather
 from sgcad_core.records.timeline import Act, of_actor, starts_from_rest
@@ -275,7 +276,7 @@ def crash_of(crash: CrashTold, inferred: CrashInferred, sky: Conditions, timelin
         sky.surface or _SURFACE.get(sky.weather),
         slight=sky.slight and crash.roster.counted and crash.near is None,
         near_crash=_near(crash, inferred.maneuvers) if contacts else None,
-        courses=crash.course.courses,
+        courses=with_impact_speeds(crash.course.courses, inferred.sources),
         impacts=tuple(read.impact for read in crash.impacts),
         untouched=crash.untouched,
         oriented=bool(inferred.stated),

@@ -99,12 +99,18 @@ class CourseTold:
     """The end and the flank of the corner at which it touches first: it does so at that part of either."""
     pace: Pace | None = None
     """How fast it drives before its first contact, where that is told in words."""
+    offset: bool = False
+    """Meets what comes against it with one side of its front only: the left one, as both drive on the right."""
     signal_turned: bool = False
     """The state of its traffic signal is that to which it is told to have turned just before."""
     inside: bool = False
     """Drives into a junction before its first contact."""
     brakes: bool = False
     """Before its first contact."""
+    stops: bool = False
+    """Has come to a stop in its maneuver, in the way of others, and stands at its first contact."""
+    speed_at_impact: bool = False
+    """Its told speed is that at its first contact."""
     steers: Steering | None = None
     """Before its first contact, to avoid it."""
     no_evasion: bool = False

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from sgcad_core.planner.aftermath.impact import Body, Point, approach, collide
 
-_SOFT, _HARD, _PER_MPS = 0.45, 0.08, 0.16
+_SOFT, _HARD, _PER_MPS = 0.45, 0.1, 0.16
 """Restitution of two vehicles that hardly crush and of two that crush deeply, and how fast it falls with the closing
 speed: about 0.3 at 3 m/s, 0.1 at 9 m/s."""
 

@@ -14,20 +14,10 @@ from itertools import product
 
 import numpy as np
 
-from sgcad_core.planner.actor_plan import (
-    BRAKED_TO,
-    PUSHED_M,
-    Drift,
-    Pacing,
-    Role,
-    Twist,
-    facing,
-    is_standing,
-    starts_at_m,
-    usual_speed,
-)
+from sgcad_core.planner.actor_plan import PUSHED_M, Drift, Pacing, Role, Twist, facing, is_standing, usual_speed
+from sgcad_core.planner.approach_pace import approach_pace
 from sgcad_core.planner.encounter.maneuver_choices import FROM_OTHER_LANE, OTHER_LANE, OTHER_LANE_COST, drifts, homing
-from sgcad_core.planner.encounter.meeting_place import TURNING, turns_off
+from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.encounter.out_of_lanes import OUT, out_of_lanes, stands_out_of_lanes, starts_beside
 from sgcad_core.planner.encounter.pacing_choices import pacings
 from sgcad_core.planner.encounter.place_cost import cost_outside, in_junction, misfit, out_of_zone, waiting_zone
@@ -54,12 +44,13 @@ _SWING_ASIDE_M = 5.0
 """Lateral room for steering aside; beyond it the speed is reduced."""
 _MEETS_S, _PLAIN = np.linspace(-2.5, 2.5, 11), 4
 """Own times at which nearly all encounters are, and the number of the most ordinary options."""
-_LEAST_SWING, _UNBRAKED, _UNDER_WAY_M = 1.2, 0.3, 2.5
-"""Radius when steering aside, over the tightest of the vehicle; cost of a contact before the stated braking is visible;
-distance after a standing start from which the vehicle counts as moving."""
-_SLOWS_M, _RIGHT_BEFORE_M, _CRAWLS_MPS, _SLOW_S = (3.0, 15.0), 12.0, 1.5, 2.0
-"""Distance before its place at which a vehicle is slow; before one right before a junction; how slow at least, and the
-time for which a slower one is."""
+_LEAST_SWING, _UNBRAKED, _UNDER_WAY_M = 1.2, 0.4, 2.5
+"""Radius when steering aside, over the tightest of the vehicle; cost of a contact before the stated braking is visible
+or behind its end; distance after a standing start from which the vehicle counts as moving."""
+_SLOWED_M = 1.0
+"""Slack of the stretch on which told braking or slowing shows."""
+_NOT_STOPPED, _STOPPED_M = 1.5, 0.3
+"""Cost of a contact before the place where a vehicle is told to have stopped, and how near it counts as there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,8 +169,10 @@ def _sorted(role: Role, parts: Iterable[tuple[Drift, Pacing, Twist]]) -> list[Op
 # ------------------------------------------------------------------ making a motion
 def driving(option: Option) -> Motion:
     """A motion along the road with the option's changes."""
-    role, place = option.role, option.role.place.station_m
-    drift, pace = option.drift, _pace(role, option)
+    role, place, drift = option.role, option.role.place.station_m, option.drift
+    unusual = any((drift.note, option.twist.note, option.dodge, drift.earlier, drift.yaw_rad))
+    speed = entering_mps(role, option.twist, usual_speed(role) * option.pacing.factor)
+    pace = replace(approach_pace(role, option.pacing, speed, unusual=unusual), off=leaving(role, drift))
     line, path, drivable = _lines(option, pace)
     path, drag, unturned, skids_from_m = slid(role, path, option.twist, pace.cruise_mps)
     time, station = drive(line, pace, place, (path, role.course.path), drag)
@@ -193,8 +186,11 @@ def driving(option: Option) -> Motion:
         drivable = drivable and bool(np.interp(np.interp(_MEETS_S, time, station), path.s_m, out).min() < OUT)
     if pace.starts_at_m is not None:
         penalty = penalty + 1.5 * (path.s_m < pace.starts_at_m + (PUSHED_M / 2 if role.pushed else _UNDER_WAY_M))
-    if pace.brakes and pace.slow_at_m is not None:
-        penalty = penalty + _UNBRAKED * (path.s_m < pace.slow_at_m - _UNDER_WAY_M)
+    if pace.slow_at_m is not None and (pace.brakes or role.side == "back"):
+        until_m = pace.slow_at_m + pace.slows_on_m + _SLOWED_M
+        penalty = penalty + _UNBRAKED * ((path.s_m < pace.slow_at_m - _SLOWED_M) | (path.s_m > until_m))
+    if pace.stops_at_m is not None:
+        penalty = penalty + _NOT_STOPPED * (path.s_m < pace.stops_at_m - _STOPPED_M)
     starts = float(time[0]) if option.pacing.from_stop and not role.pushed else None
     return Motion(path, time, station, role.size, penalty, begins, axle=line, drivable=drivable, starts_s=starts)
 
@@ -272,29 +268,3 @@ def _begins(role: Role, drift: Drift) -> float:
     shown = [turn.entry_m - 2.0] if (turn := role.course.turn) is not None else []
     shown += [drift.begins_m] if drift.earlier or (drift.left_m and drift.end_m > 0) else []
     return min(shown, default=role.place.station_m - (3.0 if role.actor.record.walks else 10.0))
-
-
-def _pace(role: Role, option: Option) -> Pace:
-    pacing, told = option.pacing, role.actor.speed_mph is not None
-    speed = entering_mps(role, option.twist, usual_speed(role) * pacing.factor)
-    usual = 6.5 if role.actor.maneuver != "u_turn" else 4.5
-    curve = max(usual * pacing.factor, speed if told else 3.0)
-    drift = option.drift
-    hard = told or any((drift.note, option.twist.note, option.dodge, drift.earlier, drift.yaw_rad))
-    pace = Pace(speed, curve, starts_at_m(role, pacing), grip_mps2=role.grip_mps2, hard=hard, off=leaving(role, drift))
-    slows = role.actor.maneuver == "slowing" and not role.untouched
-    if not (slows or role.told.brakes):
-        return pace
-    slowed = (0.35 if slows else BRAKED_TO) * speed
-    before_m = _SLOWS_M[_before_junction(role)] if slows else role.size[0] / 2 + 1.0
-    if slows and slowed < _CRAWLS_MPS and role.side == "back":  # it slows to that speed, from that of the one behind
-        slowed, pace = speed, replace(pace, cruise_mps=max(speed, min(usual_speed(role), role.other_mps)))
-        before_m = min(before_m, _SLOW_S * speed)
-    at = role.place.station_m - before_m
-    return replace(pace, slow_at_m=at, slow_mps=max(slowed, min(speed, _CRAWLS_MPS)), brakes=role.told.brakes)
-
-
-def _before_junction(role: Role) -> bool:
-    """Whether its place lies right before a junction that it goes straight through."""
-    entries = (p.entry_m - role.place.station_m for p in role.course.passages if p.is_junction)
-    return not turns_off(role.course) and any(0.0 < away < _RIGHT_BEFORE_M for away in entries)

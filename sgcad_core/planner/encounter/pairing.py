@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from heapq import nsmallest
 from typing import NamedTuple
 
-from sgcad_core.planner.actor_plan import Role
+from sgcad_core.planner.actor_plan import Role, comes_against
 from sgcad_core.planner.encounter.encounter_search import Meeting, find_meeting
 from sgcad_core.planner.encounter.motion_options import Option
 from sgcad_core.planner.encounter.out_of_lanes import OUT
@@ -90,7 +90,10 @@ def _meeting(a: Option, b: Option, wanted: tuple[Area, Area] | None) -> Meeting 
 
 
 def part_of(role: Role) -> Area | None:
-    """The part of its side at which an actor touches: of a told corner the flank, where its side is the end."""
+    """The part of its side at which an actor touches: of a told corner the flank, where its side is the end; the left
+    one of a front that meets an oncoming front off center."""
+    if role.told.offset and role.side == role.other_side == "front" and comes_against(role):
+        return "left"
     if role.told.corner is None or role.side not in role.told.corner:
         return None
     end, flank = role.told.corner

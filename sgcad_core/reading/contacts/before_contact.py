@@ -45,4 +45,5 @@ def split(segment: Segment, impact: int) -> tuple[str, str]:
 
 def _if_evading(text: str) -> str:
     """A text behind the impact that retells an evasion before it; else ""."""
-    return text if rule("course_evasion.to_avoid").search(text) or rule("course_evasion.none").search(text) else ""
+    avoids = rule("course_evasion.to_avoid").search(text) or rule("course_evasion.saw_it_come").search(text)
+    return text if avoids or rule("course_evasion.none").search(text) else ""

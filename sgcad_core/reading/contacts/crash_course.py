@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
-from sgcad_core.reading.actors.vehicles import Roster
+from sgcad_core.reading.actors.vehicles import MENTION, Roster
 from sgcad_core.reading.contacts.before_contact import RETOLD, is_late, split
 from sgcad_core.reading.contacts.rest_words import (
     HANDS,
@@ -109,6 +109,9 @@ def courses_told(
         late = is_late(segment, impact, late)
     if event and event.kind == "rollover":
         heard[event.vehicle].add("rolls", True, event.source)
+    for t in (t for t in statements if t.role not in UNREAD and rule("course_impacts.offset").search(t.text)):
+        for vehicle in heard.keys() & set(MENTION.findall(t.text)):
+            heard[vehicle].add("offset", True, Source(t.number, "", "course_impacts.offset"))
     for vehicle, source in left_scene(statements, roster, impact if impact < 10_000 else 0):
         heard[vehicle].add("leaves", True, source)
     for one in heard.values():
@@ -137,6 +140,8 @@ def _read(one: _CourseReader, segment: Segment, impact: int, event: str, *, late
         before, behind = segment.text[:at], segment.text
     early = segment.number <= impact and not (late and segment.number == impact)
     _read_evasion(one, segment, before, early=early)
+    if early and (m := rule("course_evasion.stops_in_the_way").search(before)):
+        one.add("stops", True, Source(segment.number, m[0], "course_evasion.stops_in_the_way"))
     if segment.role not in RETOLD and early:
         if m := rule("course_evasion.in_junction").search(before):
             one.add("inside", True, Source(segment.number, m[0], "course_evasion.in_junction"))

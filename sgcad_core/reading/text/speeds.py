@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from sgcad_core.reading.language import rule
 from sgcad_core.reading.motion.clauses import Statement
-from sgcad_core.reading.motion.motion_record import VehicleMotion
+from sgcad_core.reading.motion.motion_record import Source, VehicleMotion
+from sgcad_core.records.course import Courses, CourseTold
 
 FASTEST_MPH = 120.0
 """The most that is read as a vehicle's speed and driven; the fastest of known reports has 100."""
@@ -31,6 +33,7 @@ class Speed(NamedTuple):
 
 
 _BARE = rule("speeds.bare")
+_WORD_ENDS = re.compile(r"\)|(?<=\w)(?=,? )")
 
 
 def speeds(text: str, before: str = "") -> Iterator[Speed]:
@@ -39,7 +42,19 @@ def speeds(text: str, before: str = "") -> Iterator[Speed]:
     for pattern, factor in ((rule("surroundings.speed"), 1.0), (rule("surroundings.kmph"), MILES), (_BARE, 1.0)):
         for m in pattern.finditer(text):
             if not of_limit or pattern is _BARE or rule("speeds.driven").search(text[: m.start()]):
-                yield Speed(_mph(m, factor), m.start("a"), m.end(), m.group(), pattern.id)
+                moment = rule("speeds.at_impact").match(text, m.end())
+                words = text[m.start() : moment.end()] if moment else m.group()
+                yield Speed(_mph(m, factor), m.start("a"), m.end(), words, pattern.id)
+
+
+def with_impact_speeds(courses: Courses, sources: Mapping[str, Source]) -> Courses:
+    """The courses with the mark of vehicles whose told speed is that of the contact; `sources`: "V1 speed" and more."""
+    told = [name.split()[0] for name, source in sources.items() if name.endswith(" speed") and _is_of_impact(source)]
+    return {**courses, **{who: replace(courses.get(who, CourseTold()), speed_at_impact=True) for who in told}}
+
+
+def _is_of_impact(source: Source) -> bool:
+    return any(rule("speeds.at_impact").match(source.words, m.start()) for m in _WORD_ENDS.finditer(source.words))
 
 
 def _mph(m: re.Match[str], factor: float) -> int:

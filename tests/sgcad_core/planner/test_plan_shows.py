@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from sgcad_core.case.records import Trajectory
+from sgcad_core.planner import Plan, plan
 from sgcad_core.planner.lines.maneuver_course import course_of
 from sgcad_core.planner.maneuver_visible import unseen_evasion, unseen_maneuver
 from sgcad_core.records.course import CourseTold
+from sgcad_core.records.specs import Actor, BehaviorSpec
 from tests.sgcad_core.planner.crash_scenes import network
-from tests.sgcad_core.planner.test_plan_rules import actor, at_contact, planned, track
+from tests.sgcad_core.planner.test_plan_rules import actor, at_contact, contact, planned, track
 
 
 def sideways(t: Trajectory, k: int) -> float:
@@ -74,3 +76,44 @@ def test_a_maneuver_that_is_not_seen_is_noted() -> None:
     aside = ahead + np.column_stack((np.linspace(0.0, -1.5, len(ahead)), np.zeros((len(ahead), 2))))
     assert unseen_maneuver(passer, course, aside) is None
     assert unseen_maneuver(actor("V1", "straight", "S"), course, ahead) is None
+
+
+def told(courses: dict[str, CourseTold], *actors: Actor, contacts: tuple[str, ...]) -> Plan:
+    behavior = BehaviorSpec(actors=actors, contacts=tuple(contact(c) for c in contacts))
+    return plan(behavior, network("four_leg_wide"), courses=courses)
+
+
+def speed_before(made: Plan, who: str, seconds: float) -> float:
+    """Mean speed in the last tenth of a second that ends so long before the contact, m/s."""
+    t, k = track(made, who), at_contact(made) - round(seconds / 0.05) - 1
+    return math.hypot(t.x_m[k] - t.x_m[k - 2], t.y_m[k] - t.y_m[k - 2]) / 0.1
+
+
+def test_told_braking_lasts_until_the_contact() -> None:
+    made = told({"V2": CourseTold(brakes=True)}, actor("V1", "stopped", "E"), actor("V2", "straight", "E"),
+                contacts=("V2 front V1 back",))  # fmt: skip
+    assert made.realised
+    assert speed_before(made, "V2", 0.0) < speed_before(made, "V2", 0.3) - 0.8
+
+
+def test_a_speed_told_at_the_impact_is_that_of_the_contact_though_it_brakes() -> None:
+    one = actor("V2", "straight", "E", speed_mph=30)
+    made = told({"V2": CourseTold(brakes=True, speed_at_impact=True)}, actor("V1", "stopped", "E"), one,
+                contacts=("V2 front V1 back",))  # fmt: skip
+    assert speed_before(made, "V2", 0.0) == pytest.approx(30 * 0.44704, rel=0.12)
+    assert speed_before(made, "V2", 1.5) > 1.2 * 30 * 0.44704
+
+
+def test_who_turned_and_stopped_in_the_way_stands_when_it_is_struck() -> None:
+    made = told({"V1": CourseTold(stops=True)}, actor("V1", "turn_left", "S", "W"), actor("V2", "straight", "W", "E"),
+                contacts=("V2 front V1 left",))  # fmt: skip
+    assert made.realised
+    assert [speed_before(made, "V1", s) for s in (0.0, 0.4)] == pytest.approx([0.0, 0.0], abs=0.1)
+    assert speed_before(made, "V1", 3.0) > 1.0
+
+
+def test_one_that_slows_is_never_faster_than_the_one_behind_that_strikes_it() -> None:
+    made = told({}, actor("V1", "slowing", "E"), actor("V2", "straight", "E", speed_mph=20),
+                contacts=("V2 front V1 back",))  # fmt: skip
+    assert made.realised
+    assert speed_before(made, "V1", 0.0) < 0.5 * 20 * 0.44704

@@ -125,6 +125,22 @@ def test_speed_follows_the_curvature_of_the_driven_line(cruise, left, length, su
     assert (speed**2 * bend)[speed > 1.2].max() < 0.7 * DRIVING.friction_mps2(surface)
 
 
+def test_braking_goes_on_down_to_its_least_speed() -> None:
+    path = draw(np.array([[0.0, 0.0], [200.0, 0.0]]))
+    pace = Pace(20.0, slow_at_m=100.0, slow_mps=14.0, least_mps=8.0, brakes=True)
+    time, station = drive(path, pace, 100.0)
+    at = np.array([100.0, 100.0 + pace.slows_on_m / 2, 100.0 + pace.slows_on_m, 160.0])
+    speed = np.diff(np.interp([at - 0.5, at + 0.5], station, time), axis=0)[0] ** -1.0
+    assert speed == pytest.approx([14.0, math.sqrt((14.0**2 + 8.0**2) / 2), 8.0, 8.0], abs=0.3)
+
+
+def test_what_stops_in_the_way_stands_there_from_then_on() -> None:
+    path = draw(np.array([[0.0, 0.0], [200.0, 0.0]]))
+    time, station = drive(path, Pace(10.0, stops_at_m=80.0), 80.0)
+    assert np.interp([0.0, 3.0], time, station) == pytest.approx([80.0, 80.0], abs=0.01)
+    assert np.interp(-4.0, time, station) < 80.0 - 4.0**2
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.floats(3, 35), st.floats(2, 9), st.booleans())
 def test_a_drive_keeps_limits_and_usual_accelerations(cruise, curve, from_stop):

@@ -33,6 +33,30 @@ def test_braking_is_read_of_whoever_braked(words: str) -> None:
     assert not course(text, "V2").brakes
 
 
+def test_braking_told_behind_the_impact_as_an_answer_to_what_was_seen_is_read() -> None:
+    assert course(
+        f"{HIT}The driver of Vehicle #1 was at work. As soon as he realized the danger he hit the brakes."
+    ).brakes
+
+
+def test_a_turn_that_ends_in_a_stop_in_the_lanes_of_others_is_read() -> None:
+    text = f"Vehicle #2 turned left and stopped in the northbound lanes. {HIT}"
+    assert course(text, "V2").stops
+    assert not course(f"Vehicle #2 stopped in the left turn lane, then turned left. {HIT}", "V2").stops
+
+
+@pytest.mark.parametrize("words", ["at the time of impact", "when it struck Vehicle #2"])
+def test_a_speed_at_the_impact_is_told_apart(words: str) -> None:
+    assert course(f"{HIT}Vehicle #1 was traveling at 30 mph {words}.").speed_at_impact
+    assert not course(f"{HIT}Vehicle #1 was traveling at 30 mph.").speed_at_impact
+
+
+def test_an_offset_frontal_crash_is_one_of_both() -> None:
+    text = "The front of Vehicle #1 struck the front of Vehicle #2 in an offset-frontal manner."
+    assert course(text).offset
+    assert course(text, "V2").offset
+
+
 @pytest.mark.parametrize("words", ["did not brake", "never saw the brake lights ahead", "had replaced his brakes"])
 def test_brakes_alone_are_no_braking(words: str) -> None:
     assert not course(f"The driver of Vehicle #1 {words}. {HIT}").brakes
