@@ -97,7 +97,7 @@ def _unread(reading: Reading, sentence: Sentence, kind: str) -> Item:
 # ------------------------------------------------------------------ whether it was read
 def _lane(reading: Reading, sentence: Sentence, read: _Read) -> bool:
     around = reading.roads.junction.circle_lanes is not None and CIRCLE_LANES.search(sentence.text)
-    heard = read.has(sentence.start, "lane", "approaches", "one_way", "divided", "straddles")
+    heard = read.has(sentence.start, "lane", "approaches", "one_way", "divided", "straddles", "stops")
     late = sentence.start > read.first_contact
     return late or heard or bool(around) or not _tells_lanes(_without_known(reading, sentence))
 

@@ -47,7 +47,7 @@ _SPEEDS_SHORT = ((0.5, 0.5), (0.35, 0.35), (0.7, 0.7))
 _SPEEDS_ASIDE = ((0.5, 1.1), (1.1, 0.5))
 """The same where the side on which one of them comes to rest is told: the slower one hardly turns the other one's
 way."""
-_SPEEDS_HEAD_ON = ((1.0, 1.0), (0.9, 1.1), (1.1, 0.9), (0.8, 0.8), (1.2, 1.2), (0.6, 0.6))
+_SPEEDS_HEAD_ON = ((1.0, 1.0), (0.85, 1.1), (1.1, 0.85), (0.7, 0.9), (0.9, 0.7), (0.7, 0.7))
 """Those of two fronts that come against each other: nothing untold makes one of them much faster."""
 _PLACES = 5
 """Places along the stated sides, at each of the speeds."""

@@ -262,8 +262,8 @@ def _conditions(builder: FactBuilder, read: StageResults) -> Iterator[Fact]:
 
 _REST = ("facing_deg", "where", "side", "attitude", "against", "distance_m", "lane", "lane_way")
 _OWN = (
-    "pace", "lost_control", "yaws", "departs", "beyond", "spin", "spin_deg", "rolls", "roll_quarters", "rolls_to",
-    "leaves",
+    "pace", "stops", "lost_control", "yaws", "departs", "beyond", "spin", "spin_deg", "rolls", "roll_quarters",
+    "rolls_to", "leaves",
 )  # fmt: skip
 
 
