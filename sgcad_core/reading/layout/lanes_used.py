@@ -35,6 +35,8 @@ class _Need:
     way: Compass
     lanes: int = 1
     turn: Turn | None = None
+    counted: bool = False
+    """In a lane that is told by its place among those for that turn: there are as many as the story counts."""
     center: bool = False
     parted: bool = False
     """Only where no lane of the other direction lies beside it."""
@@ -114,7 +116,8 @@ def _needs(crash: CrashFacts) -> Iterator[_Need]:
             yield _Need(v.heading, center=True, why=f"{v.id} is in the center turn lane")
         elif v.lane_word in ("left_turn", "right_turn"):
             turn: Turn = "left" if v.lane_word == "left_turn" else "right"
-            yield _Need(v.heading, abs(v.lane or 1), turn=turn, why=f"{v.id} is in the {turn}-turn lane")
+            why = f"{v.id} is in the {turn}-turn lane"
+            yield _Need(v.heading, abs(v.lane or 1), turn=turn, counted=v.lane is not None, why=why)
         elif v.lane or word in ("left", "middle"):
             lane = f"lane {abs(v.lane)} from the {'right' if v.lane > 0 else 'left'}" if v.lane else f"the {word} lane"
             yield _Need(v.heading, min(_own(v), MOST), by_word=word == "left", why=f"{v.id} is in {lane}")
@@ -169,8 +172,9 @@ def _changed(need: _Need, leg: Leg, legs: dict[Compass, Leg], facts: RoadFacts) 
             ahead.model_copy(update={"lanes_in": ahead.lanes_in - 1, "lanes_out": ahead.lanes_out + 1}),
         )
     elif need.turn and not plain:
-        many = max(lanes.turns.get("any", ()).count(need.turn) for lanes in (*_told(facts, leg), LaneFacts()))
-        yield leg.bearing, _with_turn_lanes(leg, need.turn, _exits(need.way, legs), max(need.lanes, many))
+        counts = _told(facts, leg) if need.counted else ()
+        many = max([need.lanes, *(lanes.turns.get("any", ()).count(need.turn) for lanes in counts)])
+        yield leg.bearing, _with_turn_lanes(leg, need.turn, _exits(need.way, legs), many)
     else:
         least = max(need.lanes, 2) if need.turn else need.lanes
         yield leg.bearing, _with_lanes(leg, least)
