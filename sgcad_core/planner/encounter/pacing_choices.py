@@ -35,7 +35,7 @@ def pacings(role: Role) -> list[Pacing]:
     told = _TOLD_SPEED if (role.spins or role.other_spins) and role.actor.speed_mph else 0.0
     found = [Pacing(0.0), *_following(role), Pacing(0.2 + told, 0.75, note=_SLOWER)]
     found += [Pacing(0.3 + told, 1.3, note=_FASTER), Pacing(0.4 + told, 0.5, note=_SLOWER)]
-    if role.actor.maneuver in TURNING or role.course.passages:
+    if role.actor.maneuver in TURNING or (role.course.passages and role.actor.maneuver != "slowing"):
         found.append(Pacing(0.25 + told, 1.0, True, "starts from a stop"))
     return found
 

@@ -5,12 +5,24 @@ Knows segments and the sentence of the first contact; no vehicle and no fact.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable, Iterator
+
+from sgcad_core.reading.actors.vehicles import MENTION
 from sgcad_core.reading.language import rule
-from sgcad_core.reading.motion.clauses import Segment
+from sgcad_core.reading.motion.clauses import Segment, Statement
+from sgcad_core.reading.motion.motion_record import Source
 from sgcad_core.reading.text.sentence_roles import HIT, Role
 
 RETOLD: frozenset[Role] = frozenset({"interview"})
 """Roles of sentences in which the crash is told once more."""
+
+
+def offset_fronts(statements: Iterable[Statement], vehicles: Collection[str]) -> Iterator[tuple[str, Source]]:
+    """Vehicles whose fronts met with a part of their widths, each with where that is told."""
+    for told in statements:
+        if rule("course_impacts.offset").search(told.text):
+            source = Source(told.number, "", "course_impacts.offset")
+            yield from ((vehicle, source) for vehicle in vehicles if vehicle in MENTION.findall(told.text))
 
 
 def is_late(segment: Segment, impact: int, late: bool) -> bool:

@@ -11,8 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
-from sgcad_core.reading.actors.vehicles import MENTION, Roster
-from sgcad_core.reading.contacts.before_contact import RETOLD, is_late, split
+from sgcad_core.reading.actors.vehicles import Roster
+from sgcad_core.reading.contacts.before_contact import RETOLD, is_late, offset_fronts, split
 from sgcad_core.reading.contacts.rest_words import (
     HANDS,
     last_place,
@@ -109,9 +109,8 @@ def courses_told(
         late = is_late(segment, impact, late)
     if event and event.kind == "rollover":
         heard[event.vehicle].add("rolls", True, event.source)
-    for t in (t for t in statements if t.role not in UNREAD and rule("course_impacts.offset").search(t.text)):
-        for vehicle in heard.keys() & set(MENTION.findall(t.text)):
-            heard[vehicle].add("offset", True, Source(t.number, "", "course_impacts.offset"))
+    for vehicle, source in offset_fronts([t for t in statements if t.role not in UNREAD], heard):
+        heard[vehicle].add("offset", True, source)
     for vehicle, source in left_scene(statements, roster, impact if impact < 10_000 else 0):
         heard[vehicle].add("leaves", True, source)
     for one in heard.values():
@@ -269,8 +268,7 @@ def _read_facing(one: _CourseReader, segment: Segment, clause: str) -> None:
         if (about := rule("course_rest.turned_about").search(clause)) and "spin_deg" not in one.sources:
             one.add("spin_deg", 180.0, Source(segment.number, about[0], "course_rest.turned_about"))
         return
-    point = WORDS[(m["point"] or m["heads"] or m["way"]).lower()]
-    angle = 45.0 * COMPASS.index(point)
+    angle = 45.0 * COMPASS.index(WORDS[(m["point"] or m["heads"] or m["way"]).lower()])
     if m["first"]:
         first = 45.0 * COMPASS.index(WORDS[m["first"].lower()])
         angle += ((first - angle + 180) % 360 - 180) / 2
@@ -281,8 +279,7 @@ def _read_place(one: _CourseReader, segment: Segment, text: str, clause: str | N
     """The clause of the rest says where; else the last place on the way there."""
     on_the_way = text[: len(text) - len(clause)] if clause else text
     for part in (on_the_way, clause or ""):
-        found = last_place(part)
-        side = side_named(part)
+        found, side = last_place(part), side_named(part)
         if found is None and side is not None and part is clause and one.course.rest.where is not None:
             one.add_rest("side", side, Source(segment.number, part, "course_rest.side_named"), anew=True)
         if found is None or (part is on_the_way and not leaves_road(part)):

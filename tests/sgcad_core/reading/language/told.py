@@ -59,6 +59,8 @@ def _besides(reading: Reading) -> dict[str, object]:
         "as_read": " ".join(s.text for s in reading.sentences),
         "gap": crash.gap.reason if crash.gap else None, "lost_control": reading.lost_control,
         "slight": crash.slight or None, "inside": sorted(v for v, c in crash.courses.items() if c.inside) or None,
+        "offset": sorted(v for v, c in crash.courses.items() if c.offset) or None,
+        "at_impact": sorted(v for v, c in crash.courses.items() if c.speed_at_impact) or None,
         "leaves_road": sorted(who for who, course in crash.driven.items() if course.departs),
         "near": bool(near), "near.clearance_m": near.clearance_m if near else None,
         "roads.merge_lane": roads.merge_lane, "roads.crosswalk": roads.crosswalk, "roads.urban": roads.urban,
