@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -93,11 +94,11 @@ def leave_beside(scene: Scene, strike: Strike, surface: RoadSurface) -> None:
 
 
 def _out_of_reach(scene: Scene, strike: Strike, surface: RoadSurface) -> Floats:
-    """A place ahead of the rest of the vehicle, at the first distance where no actor ever is."""
+    """A place ahead of the rest of the vehicle, else beside it, at the first distance where no actor ever is."""
     size, track = size_m(strike.thing), scene.tracks[strike.by]
     x, y, heading = (float(v) for v in track.poses[-1])
-    for away in (*_PAST_M, 500.0):
-        place = np.array([x + away * math.cos(heading), y + away * math.sin(heading)])
+    for turn, away in (*product((0.0, math.pi / 2, -math.pi / 2), _PAST_M), (0.0, 500.0)):
+        place = np.array([x + away * math.cos(heading + turn), y + away * math.sin(heading + turn)])
         faces = across_road(surface, place) if runs_along(strike.thing) else heading
         pose = np.array([*place, faces])
         if _is_free(scene, strike, pose, size, len(track.poses)):

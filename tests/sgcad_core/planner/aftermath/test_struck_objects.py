@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from itertools import combinations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from sgcad_core.geometry.plane import Box, box_gaps, contact_area
 from sgcad_core.planner import plan
+from sgcad_core.planner.aftermath import struck_objects
 from sgcad_core.records.course import CourseTold, RestTold
 from sgcad_core.records.specs import Actor, Area, BehaviorSpec, Contact, size_m
 from sgcad_core.roads.surface import road_surface
@@ -69,6 +71,18 @@ def test_a_thing_that_nobody_can_reach_is_told_and_touches_nobody() -> None:
     found, notes = touches(still.model_copy(update={"actors": tuple(slow)}))
     assert found == [("V1", "V2")]
     assert "V2 does not reach O1, which it strikes as told" in notes
+
+
+def test_a_thing_that_is_not_reached_stands_beside_the_rest_where_there_is_no_room_ahead(monkeypatch) -> None:
+    def room_beside(scene, strike, pose, size, until) -> bool:
+        x, y, heading = scene.tracks[strike.by].poses[-1]
+        return abs((pose[0] - x) * np.cos(heading) + (pose[1] - y) * np.sin(heading)) < 1.0
+
+    monkeypatch.setattr(struck_objects, "_is_free", room_beside)
+    track = SimpleNamespace(poses=np.array([[0.0, 0.0, 0.0], [20.0, 5.0, 0.3]]))
+    post = SimpleNamespace(thing=thing(1), by="V2")
+    pose = struck_objects._out_of_reach(SimpleNamespace(tracks={"V2": track}), post, None)
+    assert np.hypot(*(pose[:2] - track.poses[-1, :2])) <= 60.0
 
 
 @pytest.mark.parametrize("where", ["off_road", "shoulder"])
