@@ -85,9 +85,8 @@ class CrashReport(NarrativeRecord):
                 if self.opinion.answered
                 else fused_with_gist(found, self.opinion)
             )
-        if self.opinion:
-            found = replace(found, unsure=unsure_answers(rules, found, self.opinion.guesses))
-        return with_edits(found, self.edits)
+        found = with_edits(found, self.edits)
+        return replace(found, unsure=unsure_answers(rules, found, self.opinion.guesses)) if self.opinion else found
 
 
 class Context(NarrativeRecord):

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from sgcad_core.case.records import CrashReport
 from sgcad_core.reading.reading import read
 from sgcad_core.reading.second_reader.numbered.fuse_numbered import fused_with_guesses
 from sgcad_core.reading.second_reader.numbered.unsure_answers import LEAST_SURE, unsure_answers
-from sgcad_core.records.second_reader import Guess, Unsure
+from sgcad_core.records.edits import Edit
+from sgcad_core.records.second_reader import Guess, Opinion, Unsure
 
 TEXT = (
     "V1 was traveling east on a four lane road in lane one. V2 was traveling east on the same road in lane two. "
@@ -47,3 +49,15 @@ def test_what_is_met_first_is_not_judged() -> None:
 def test_what_a_model_made_of_an_answer_since_is_not_judged() -> None:
     other = fused_with_guesses(RULES, {"maneuver.V1": Guess(value="turn_left", p=0.9)})
     assert unsure_answers(RULES, other, {"maneuver.V1": Guess(p=0.1)}) == ()
+
+
+@pytest.mark.parametrize(("edit", "left"), [
+    (None, {"lanes.V1", "area.V1", "turned.V2"}),
+    (Edit(field="vehicles.V1.present", value=False), set()),
+    (Edit(field="vehicles.V1.heading", value="N"), {"area.V1"}),
+])  # fmt: skip
+def test_what_a_person_changed_is_not_judged(edit, left) -> None:
+    questions = ("lanes.V1", "area.V1", "turned.V2")
+    opinion = Opinion(guesses={question: Guess(p=0.5) for question in questions})
+    report = CrashReport(case="a", narrative=TEXT, opinion=opinion, edits=(edit,) if edit else ())
+    assert {one.question for one in report.reading.unsure} == left
