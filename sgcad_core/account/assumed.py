@@ -16,6 +16,7 @@ from sgcad_core.account.records import Item
 from sgcad_core.account.words import phrase
 from sgcad_core.reading.layout.layout_facts import layout_of_facts
 from sgcad_core.reading.provenance.road_provenance import road_of_bearing
+from sgcad_core.reading.second_reader.numbered.numbered_answers import side_of
 from sgcad_core.reading.text.compass import turned
 from sgcad_core.records.edits import canonical, effective
 from sgcad_core.records.facts import Fact, Value
@@ -123,7 +124,7 @@ def _asked(made: ExecutedCase, kind: str, of: str) -> tuple[str, Value, str]:
         return "junction.kind", roads.junction.kind, ""
     if kind == "area":
         role = "striker" if crash.contacts[0].striker == of else "struck"
-        return f"contacts.0.{role}_area", getattr(crash.contacts[0], f"{role}_area"), ""
+        return f"contacts.0.{role}_area", side_of(crash, of), ""
     name = "maneuver" if kind == "maneuver" else "heading"
     return f"vehicles.{of}.{name}", getattr(crash.vehicle(of), name), ""
 

@@ -22,11 +22,11 @@ from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 from sgcad_core.roads.compiled_facts import headings_agree
 from sgcad_core.roads.lane_graph import Connection, edge_id
 from sgcad_core.rules.lights import lights_of
+from sgcad_core.rules.passages import MEANS
 
 _AT_SIGN, _AROUND, _ON_LEG = rule("account.at_sign"), rule("account.around"), rule("account.on_leg")
 _LEG_DEG = 50.0
 _ON_LANE_M = 2.0
-_MEANS = {"turn_left": "left", "turn_right": "right", "u_turn": "u_turn"}
 _JUST_S = TURNED_S + 2.0
 """A signal that has shown its state for no longer has just turned to it."""
 _PARKS = ("beside", "beyond", "off")
@@ -84,7 +84,7 @@ def _signal_ahead(made: ExecutedCase, who: str) -> Connection | None:
     if actor is None or actor.direction is None:
         return None
     links = [c for c in made.graph.leaving(edge_id(actor.road, actor.direction)) if c.light]
-    meant = _MEANS.get(actor.maneuver or "", "through")
+    meant = MEANS.get(actor.maneuver or "", "through")
     return next((c for c in links if c.direction == meant), next(iter(links), None))
 
 

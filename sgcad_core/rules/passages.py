@@ -20,7 +20,7 @@ from sgcad_core.roads.layout import HUB
 from sgcad_core.rules.records import Mover
 
 LINE_M = LINE_BACK_M - STOP_LINE_M / 2
-_MEANS = {"turn_left": "left", "turn_right": "right", "u_turn": "u_turn"}
+MEANS = {"turn_left": "left", "turn_right": "right", "u_turn": "u_turn"}
 _AHEAD_M = 15.0
 """Length of the lane behind the junction that belongs to a way across it."""
 _SETTLES_M = 6.0
@@ -98,7 +98,7 @@ def _followed(graph: LaneGraph, mover: Mover, line: int, links: Sequence[Connect
     points = mover.pose[line:, :2]
     gone = arc_lengths(points)
     if len(points) < 2 or gone[-1] < _SETTLES_M:
-        meant = _MEANS.get(mover.info.maneuver, "through")
+        meant = MEANS.get(mover.info.maneuver, "through")
         links = [c for c in links if c.direction == meant] or links
     reach = gone <= 40.0
     return min(links, key=lambda c: float(distance_to(_line(graph, c), points[reach]).mean()), default=None)

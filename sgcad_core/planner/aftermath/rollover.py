@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sgcad_core.geometry.plane import Floats
+from sgcad_core.geometry.plane import Floats, arc_lengths
 from sgcad_core.metrics.rest_error import attitude_of, compass_rad
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.records.course import Attitude, CourseTold, sense_of
@@ -47,7 +47,7 @@ def roll_angles(poses: Floats, hit: int, told: CourseTold, touches: Sequence[int
     `touches`: samples of all its contacts, in order; those that are told before the roll are behind it.
     """
     first = _tripped(poses, _cause(poses, hit, touches[: told.rolls_after]))
-    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(poses[first:, :2], axis=0).T))))
+    way = arc_lengths(poses[first:, :2])
     total = _total(_sideways_mps(poses, first), told, float(way[-1]))
     least = math.ceil(abs(total) / _ROLLS_RADPS / STEP_S)
     share = way / way[-1] if way[-1] > 0.0 else np.ones(len(way))
@@ -65,8 +65,8 @@ def _cause(poses: Floats, hit: int, touches: Sequence[int]) -> int:
 
 def _ways_left_m(poses: Floats) -> Floats:
     """(n,) metres from each of (n, 3) poses to the last one."""
-    steps = np.hypot(*np.diff(poses[:, :2], axis=0).T)
-    left: Floats = np.append(np.cumsum(steps[::-1])[::-1], 0.0)
+    gone = arc_lengths(poses[:, :2])
+    left: Floats = gone[-1] - gone
     return left
 
 
@@ -108,7 +108,7 @@ def quarters_short(poses: Floats, hit: int, told: CourseTold, touches: Sequence[
 
 def turned_over(poses: Floats, at: int, told: CourseTold) -> Floats:
     """(n, 3) poses of a vehicle that rolls over from sample `at` on, turned as it is told to lie while it moves on."""
-    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(poses[at:, :2], axis=0).T))))
+    way = arc_lengths(poses[at:, :2])
     if way[-1] <= 0.0:
         return poses
     turning = poses.copy()
