@@ -15,8 +15,8 @@ from functools import cached_property
 from sgcad_core.case.records import ObservedContact, Record, Trajectory
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.actor_plan import Role
+from sgcad_core.planner.aftermath.impact import Impact
 from sgcad_core.planner.aftermath.later_contacts import Ending, expect_later_contacts, strikes_of, struck_before
-from sgcad_core.planner.aftermath.rest_fit import Impact
 from sgcad_core.planner.aftermath.second_contact import MISSED
 from sgcad_core.planner.aftermath.struck_objects import Strike
 from sgcad_core.planner.aftermath.told_order import ToldOrder, met_in_order, pair_of

@@ -18,7 +18,7 @@ from sgcad_core.kinds import actor_kind, mass_kg
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.aftermath.ground_friction import Drag, RunOut
 from sgcad_core.planner.aftermath.hitch import hitched
-from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, body
+from sgcad_core.planner.aftermath.impact import USUAL, Impact, body
 from sgcad_core.planner.aftermath.rollover import quarters_short, roll_angles, rolls_over, turned_over
 from sgcad_core.planner.aftermath.wreck import Wreck
 from sgcad_core.planner.aftermath.wreck_bodies import Mover, Touch
@@ -117,8 +117,7 @@ class Scene:
     """Touches in order, as of the last settling."""
     runs: dict[str, tuple[RunOut, ...]] = field(default_factory=dict)
     """Chosen run-outs after impacts, by actor, in order of time."""
-    friction: float = FRICTION
-    restitution: float = RESTITUTION
+    impact: Impact = USUAL
     again: frozenset[frozenset[str]] = frozenset()
     """Pairs with a stated second contact."""
     sides: dict[frozenset[str], dict[str, Area]] = field(default_factory=dict)
@@ -179,7 +178,7 @@ class Scene:
             (t.actor, id(t.driven), t.size, t.mass, t.motion.fixed, t.gives_way, t.firm, t.flat)
             for t in self.tracks.values()
         )
-        chosen = self.friction, self.restitution, self.again, self.told, tuple(self.runs.items())
+        chosen = self.impact, self.again, self.told, tuple(self.runs.items())
         return movers, tuple(self.hitches), chosen, self.rolling, self.surface, self.count
 
     def wreck(self) -> Wreck:
@@ -189,7 +188,7 @@ class Scene:
             hitched((a, b), self.tracks[a].driven[self.contact], self.tracks[b].driven[self.contact], behind_m)
             for a, b, behind_m in self.hitches
         ]
-        return Wreck(movers, self.count, hitches, self.friction, self.restitution, self.again, self.told)
+        return Wreck(movers, self.count, hitches, self.impact, self.again, self.told)
 
     def _mover(self, track: Track) -> Mover:
         mass = None if track.motion.fixed else track.mass or mass_kg(track.kind, track.size[0])

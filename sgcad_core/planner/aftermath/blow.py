@@ -11,7 +11,7 @@ import math
 from dataclasses import replace
 from typing import NamedTuple
 
-from sgcad_core.planner.aftermath.impact import Body, Point, approach, collide
+from sgcad_core.planner.aftermath.impact import Body, Impact, Point, approach, collide
 
 _SOFT, _HARD, _PER_MPS = 0.45, 0.1, 0.16
 """Restitution of two vehicles that hardly crush and of two that crush deeply, and how fast it falls with the closing
@@ -28,10 +28,12 @@ class Blow(NamedTuple):
     second: Velocity
 
 
-def blow(bodies: tuple[Body, Body], touch: tuple[Point, Point], restitution: float, friction: float) -> Blow:
+def blow(bodies: tuple[Body, Body], touch: tuple[Point, Point], impact: Impact) -> Blow:
     """One impulse on two bodies that are as they come to touch; both stay as they are. `touch`: place and normal."""
     one, other = replace(bodies[0]), replace(bodies[1])
-    collide(one, other, *touch, min(restitution, most_restitution(approach(one, other, *touch))), friction)
+    collide(
+        one, other, *touch, min(impact.restitution, most_restitution(approach(one, other, *touch))), impact.friction
+    )
     return Blow(_velocity(one), _velocity(other))
 
 

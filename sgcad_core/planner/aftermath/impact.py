@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from sgcad_core.geometry.plane import Size
 
@@ -16,6 +17,25 @@ FRICTION = 0.5
 """Between two bodies; Brach finds 0.3 to 0.6 for vehicles that lock into each other."""
 RESTITUTION = 0.1
 """Of vehicles that crush; Brach: near 0 at speed, up to 0.3 at walking pace."""
+
+
+class Impact(NamedTuple):
+    """What is free in the blow of two vehicles. `glance_rad`: the slant of fronts that meet in part; 0 where these lock
+    into each other."""
+
+    friction: float = FRICTION
+    restitution: float = RESTITUTION
+    glance_rad: float = 0.0
+
+
+USUAL = Impact()
+IMPACTS = (
+    Impact(0.5, 0.1), Impact(0.1, 0.1), Impact(0.3, 0.0), Impact(0.6, 0.3),
+    Impact(0.1, 0.1, math.radians(25.0)), Impact(0.1, 0.1, math.radians(45.0)),
+)  # fmt: skip
+"""Impacts to try, within what Brach finds for vehicles: little friction and restitution for a graze, more friction
+where they lock; a slant of the crushed fronts up to that of a corner."""
+
 _LEAST_LENGTH_M = 1.7
 """Least length for the moment of inertia: a person is 0.5 m deep, but not so easily turned."""
 

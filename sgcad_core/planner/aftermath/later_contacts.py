@@ -12,8 +12,9 @@ from itertools import islice
 from typing import NamedTuple, Protocol
 
 from sgcad_core.kinds import actor_kind
+from sgcad_core.planner.aftermath.impact import IMPACTS, Impact
 from sgcad_core.planner.aftermath.rest_candidates import odd_ways
-from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact, RestFit
+from sgcad_core.planner.aftermath.rest_fit import RestFit
 from sgcad_core.planner.aftermath.second_contact import MISSED
 from sgcad_core.planner.aftermath.struck_objects import Strike, leave_beside, on_another_side, place_thing
 from sgcad_core.planner.aftermath.told_order import Pair, ToldOrder, pair_of

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from sgcad_core.geometry.plane import Floats, Size, gaps_where_near
 from sgcad_core.metrics.rest_error import whirls
 from sgcad_core.planner.aftermath.ground_friction import RunOut
-from sgcad_core.planner.aftermath.impact import Body
+from sgcad_core.planner.aftermath.impact import Body, Impact
 from sgcad_core.planner.aftermath.rollover import barrel_costs
 from sgcad_core.planner.aftermath.second_contact import MISSED, NOT_AGAIN, WRONG_SIDE, Sides, wrong_sides
 from sgcad_core.records.course import CourseTold
@@ -69,16 +69,17 @@ _ON_THE_SPOT, _SPOT_RAD = 0.5, math.radians(85.0)
 _LEAVES, _LEAVES_M, _SEEN = 0.4, 0.8, 12
 """Cost of a rotation on the spot; of a way off the road before a rest on it, from how far on, and the poses of a way
 that are looked at. Both are less than a missed part of what is told."""
+TOLD = 1.0
+"""Cost of a missed part of what is told."""
 UNUSUAL = 0.02
 _MOVES_MPS = 0.7
 """Speed from which the direction of a way counts."""
 
 
 class Choice(NamedTuple):
-    """Friction, restitution, and how each vehicle runs out."""
+    """The impact, and how each vehicle runs out."""
 
-    friction: float
-    restitution: float
+    impact: Impact
     runs: Mapping[str, tuple[RunOut, ...]]
 
 
@@ -112,10 +113,9 @@ class VehicleWays:
 
 @dataclass
 class BlowWays:
-    """One choice of friction and restitution with the run-outs of its vehicles."""
+    """One choice of the impact with the run-outs of its vehicles."""
 
-    friction: float
-    restitution: float
+    impact: Impact
     again: bool = False
     """Whether the two touch a second time."""
     sides: Sides = (None, None)
@@ -177,7 +177,7 @@ class BlowWays:
         best = self.best()
         self.tried.add(best)
         runs = {name: (v.runs[i],) for (name, v), i in zip(self.vehicles.items(), best, strict=True)}
-        return Choice(self.friction, self.restitution, runs)
+        return Choice(self.impact, runs)
 
     def learn(self, choice: Choice, ends: Mapping[str, Floats]) -> None:
         """Corrects the end poses by those of the whole simulation of a choice."""
@@ -259,3 +259,20 @@ def odd_ways(course: CourseTold, ways: Floats, surface: RoadSurface) -> Floats:
         off = surface.off(some[..., :2].reshape(-1, 2))[0].reshape(len(some), -1)
         cost = cost + _LEAVES * ((off.max(axis=0) > _LEAVES_M) & (off[0] < 0.0))
     return cost
+
+
+def part_missed(count: int, *errors: tuple[Floats | None, float, float]) -> Floats:
+    """(count,) costs of one stated part: 1 where any of its errors is above 0, and the errors themselves. Each comes
+    with the margin that counts as best, and its scale."""
+    cost, wrong = np.zeros(count), np.zeros(count, bool)
+    for error, well, scale in errors:
+        if error is not None:
+            wrong |= error > 0
+            cost += eased(np.maximum(error + well, 0.0) / scale)
+    return TOLD * wrong + cost / len(errors)
+
+
+def eased(error: Floats) -> Floats:
+    """Errors as costs below 1, so that no near miss of one part outweighs that another part is met."""
+    eased: Floats = error / (1.0 + error)
+    return eased

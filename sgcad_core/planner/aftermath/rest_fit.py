@@ -27,15 +27,20 @@ from sgcad_core.metrics.rest_error import (
     near_turn_rad,
     rest_errors,
 )
+from sgcad_core.planner.aftermath.crush import meet_in_part
 from sgcad_core.planner.aftermath.ground_friction import Released, run_out_paths
+from sgcad_core.planner.aftermath.impact import IMPACTS, Impact
 from sgcad_core.planner.aftermath.rest_candidates import (
+    TOLD,
     BlowWays,
     Choice,
     VehicleWays,
     all_runs,
+    eased,
     loops,
     odd_ways,
     oddities,
+    part_missed,
     rolling_back,
 )
 from sgcad_core.planner.aftermath.rollover import rolls_over
@@ -47,10 +52,6 @@ from sgcad_core.planner.scene import Scene
 from sgcad_core.records.course import Courses, CourseTold, RestTold, sense_of
 from sgcad_core.roads.surface import RoadSurface
 
-Impact = tuple[float, float]
-IMPACTS: Sequence[Impact] = ((0.5, 0.1), (0.1, 0.1), (0.3, 0.0), (0.6, 0.3))
-"""Friction and restitution to try, within what Brach finds for vehicles: little of both for a graze, more friction
-where they lock."""
 _BLOW_S = 0.2
 """Duration of the impact; then the bodies have parted or slide together, and drivers and wheels count."""
 _COARSE_S = 0.1
@@ -66,8 +67,8 @@ _WELL_RAD, _WELL_M = math.radians(15.0), 0.8
 """Margin inside the allowed error that counts as best."""
 _FACING_SCALE_RAD, _PLACE_SCALE_M = math.radians(45.0), 5.0
 """Errors of which half of the cost of an error is reached."""
-_TOLD, _USUAL_SHARE = 1.0, 0.6
-"""Cost of a missed part; share of the friction: some braking, some dragging wheels."""
+_USUAL_SHARE = 0.6
+"""Of the friction: some braking, some dragging wheels."""
 _SPIN_RAD, _MOST_UNTOLD_RAD, _WHIRLS = math.radians(15.0), math.radians(200.0), 1.3
 _MOST_SPIN_RAD = math.radians(320.0)
 """The most of a told rotation without told degrees."""
@@ -93,16 +94,17 @@ class RestFit:
             return
         best, least = self._choice(), self.cost()
         ways: list[BlowWays] = []
-        for number in range(len(self.impacts) + (_WHOLE_AGAIN if self.scene.again else _WHOLE)):
+        impacts = [impact for impact in self.impacts if not impact.glance_rad or self._glances]
+        for number in range(len(impacts) + (_WHOLE_AGAIN if self.scene.again else _WHOLE)):
             if least <= self._well:
                 break
-            if number < len(self.impacts):
-                ways.append(self._ways(*self.impacts[number]))
+            if number < len(impacts):
+                ways.append(self._ways(impacts[number]))
             left = [w for w in ways if w.best()]
             if not left:
                 continue
             way = min(left, key=lambda w: w.predicted())
-            if number >= len(self.impacts) and way.predicted() >= least:
+            if number >= len(impacts) and way.predicted() >= least:
                 break
             choice = way.choice()
             self._take(choice)
@@ -117,9 +119,9 @@ class RestFit:
         blow = self.scene.contact + 2 * round(_BLOW_S / STEP_S)
         for name, course in self.wanted.items():
             now = float(self._costs(name, course, self.scene.tracks[name].poses[-1:])[0])
-            found = run_outs(self.scene, name, 0) if now >= _TOLD else None
+            found = run_outs(self.scene, name, 0) if now >= TOLD else None
             if found is not None and found.sample > blow:
-                self._finish(name, self._costs(name, course, found.ways[-1]) + found.odd, found, now - _TOLD / 2)
+                self._finish(name, self._costs(name, course, found.ways[-1]) + found.odd, found, now - TOLD / 2)
 
     def _finish(self, name: str, costs: Floats, found: RunOuts, most: float) -> None:
         """Takes the first of the best run-outs of a vehicle with which the whole scene is nearer to what is stated."""
@@ -128,7 +130,7 @@ class RestFit:
         for n in able:
             scene.runs = with_run(scene, name, found.runs[int(n)])
             scene.settle()
-            if self.cost() < least - _TOLD / 2:
+            if self.cost() < least - TOLD / 2:
                 return
             scene.runs = before
         scene.settle()
@@ -156,26 +158,34 @@ class RestFit:
         first = {name for touch in self.scene.touches[:1] for name in (touch.first, touch.second)}
         return frozenset(first if first & self.rolling else ())
 
+    @property
+    def _glances(self) -> bool:
+        """Whether the first two that touch are vehicles that meet head on with a part of their fronts."""
+        names = [name for touch in self.scene.touches[:1] for name in (touch.first, touch.second)]
+        tracks = [self.scene.tracks[name] for name in names]
+        fixed = any(track.motion.fixed for track in tracks)
+        return bool(tracks) and not fixed and meet_in_part(*((t.driven[self.scene.contact], t.size) for t in tracks))
+
     # -------------------------------------------------------------- choices
     def _choice(self) -> Choice:
-        return Choice(self.scene.friction, self.scene.restitution, dict(self.scene.runs))
+        return Choice(self.scene.impact, dict(self.scene.runs))
 
     def _take(self, choice: Choice) -> None:
-        self.scene.friction, self.scene.restitution = choice.friction, choice.restitution
+        self.scene.impact = choice.impact
         self.scene.runs = dict(choice.runs)
         self.scene.settle()
 
-    def _ways(self, friction: float, restitution: float) -> BlowWays:
+    def _ways(self, impact: Impact) -> BlowWays:
         """All run-outs for one choice of the impact, each vehicle on its own."""
         scene = self.scene
-        scene.friction, scene.restitution, scene.runs = friction, restitution, {}
+        scene.impact, scene.runs = impact, {}
         until = scene.contact + round(_BLOW_S / STEP_S)
         wreck = scene.wreck()
         wreck.settle(until)
         free = [name for name in self.wanted if wreck.named[name].free and not wreck.named[name].fixed]
         told = scene.sides.get(frozenset(free), {})
         sides = (told.get(free[0]), told.get(free[-1])) if free else (None, None)
-        found = BlowWays(friction, restitution, any(pair <= set(free) for pair in scene.again), sides)
+        found = BlowWays(impact, any(pair <= set(free) for pair in scene.again), sides)
         if not free:
             return found
         at_s, end_s = until * STEP_S, (scene.count - 4) * STEP_S
@@ -218,13 +228,13 @@ class RestFit:
     def _costs(self, name: str, course: CourseTold, ends: Floats) -> Floats:
         """(n,) costs of (n, 3) last poses: 1 and more for every missed part."""
         facing, where, side, lane = self._errors(name, course.rest, ends)
-        total = _missed(len(ends), (facing, _WELL_RAD, _FACING_SCALE_RAD))
-        total += _missed(len(ends), (where, _WELL_M, _PLACE_SCALE_M), (side, _WELL_RAD, SIDE_RAD))
-        total += _missed(len(ends), (lane, _WELL_M, _PLACE_SCALE_M))
+        total = part_missed(len(ends), (facing, _WELL_RAD, _FACING_SCALE_RAD))
+        total += part_missed(len(ends), (where, _WELL_M, _PLACE_SCALE_M), (side, _WELL_RAD, SIDE_RAD))
+        total += part_missed(len(ends), (lane, _WELL_M, _PLACE_SCALE_M))
         if course.rest.distance_m is not None:
             off = np.abs(self._way_m(name, ends) - course.rest.distance_m)
-            total += _TOLD * (off > near_m(course.rest.distance_m)) + _eased(off / course.rest.distance_m)
-        total += _missed(len(ends), (self._from_prop(name, course.rest, ends), _WELL_M, _PLACE_SCALE_M))
+            total += TOLD * (off > near_m(course.rest.distance_m)) + eased(off / course.rest.distance_m)
+        total += part_missed(len(ends), (self._from_prop(name, course.rest, ends), _WELL_M, _PLACE_SCALE_M))
         return total + (self._unspun(name, course, ends) if course.spin else self._whirled(name, ends))
 
     def _from_prop(self, name: str, rest: RestTold, ends: Floats) -> Floats | None:
@@ -247,7 +257,7 @@ class RestFit:
             wrong |= off > near_turn_rad(wanted)
         else:
             wrong |= turned > _MOST_SPIN_RAD
-        return _TOLD * wrong + _eased(off / (2 * wanted))
+        return TOLD * wrong + eased(off / (2 * wanted))
 
     def _whirled(self, name: str, ends: Floats) -> Floats:
         """(n,) costs of an untold rotation by more than half a turn: more than of a facing that is missed."""
@@ -281,20 +291,3 @@ class RestFit:
             way = float(self._way_m(name, self.scene.tracks[name].poses[-1:])[0])
             if abs(way - rest.distance_m) > near_m(rest.distance_m):
                 yield f"{name} comes to rest {way:.0f} m from the contact (told: {rest.distance_m:.0f} m)"
-
-
-def _missed(count: int, *errors: tuple[Floats | None, float, float]) -> Floats:
-    """(count,) costs of one stated part: 1 where any of its errors is above 0, and the errors themselves. Each comes
-    with the margin that counts as best, and its scale."""
-    cost, wrong = np.zeros(count), np.zeros(count, bool)
-    for error, well, scale in errors:
-        if error is not None:
-            wrong |= error > 0
-            cost += _eased(np.maximum(error + well, 0.0) / scale)
-    return _TOLD * wrong + cost / len(errors)
-
-
-def _eased(error: Floats) -> Floats:
-    """Errors as costs below 1, so that no near miss of one part outweighs that another part is met."""
-    eased: Floats = error / (1.0 + error)
-    return eased

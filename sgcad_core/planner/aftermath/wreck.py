@@ -16,7 +16,7 @@ from sgcad_core.planner.aftermath.blow import Blow, blow, lacking, most_restitut
 from sgcad_core.planner.aftermath.crush import STEP_LONGEST_S, Crushes
 from sgcad_core.planner.aftermath.ground_friction import apply_friction
 from sgcad_core.planner.aftermath.hitch import Hitch, draw_together, equalize_velocities
-from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, Point, approach, collide, slow_parting
+from sgcad_core.planner.aftermath.impact import USUAL, Body, Impact, Point, approach, collide, slow_parting
 from sgcad_core.planner.aftermath.wreck_bodies import (
     Mover,
     Pair,
@@ -73,8 +73,7 @@ class Wreck:
     movers: Sequence[Mover]
     count: int
     hitches: Sequence[Hitch] = ()
-    friction: float = FRICTION
-    restitution: float = RESTITUTION
+    impact: Impact = USUAL
     again: frozenset[frozenset[str]] = frozenset()
     """Pairs with a stated second touch: it is kept visible like the first."""
     told: frozenset[frozenset[str]] = frozenset()
@@ -87,11 +86,12 @@ class Wreck:
     """Pairs of which one gave way to the other."""
     blows: dict[tuple[str, str], Blow] = field(default_factory=dict)
     """What pairs that hold each other lack of the velocities with which they part."""
-    crushes: Crushes = field(default_factory=Crushes)
+    crushes: Crushes = field(init=False)
     now: float = 0.0
 
     def __post_init__(self) -> None:
         self.named: Mapping[str, Mover] = {m.name: m for m in self.movers}
+        self.crushes = Crushes(self.impact)
         self._movable, self._lasting = [m for m in self.movers if not m.fixed], set(self.told)
 
     def settle(self, until: int | None = None) -> tuple[dict[str, Floats], list[Touch]]:
@@ -193,16 +193,15 @@ class Wreck:
             return gaps
         corners = [touch_points(a.body, b.body) for a, b, _ in touching]
         new = [] if self.hitches or len(touching) > 1 else [t for t in touching if self._is_new(*t[:2])]
-        wanted = [blow((a.body, b.body), (center_of(corners[0]), seen.normal), self.restitution, self.friction)
-                  for a, b, seen in new]  # fmt: skip
+        wanted = [blow((a.body, b.body), (center_of(corners[0]), seen.normal), self.impact) for a, b, seen in new]
         for (a, b, seen), points in zip(touching, corners, strict=True):
             at = center_of(points)
-            collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample), self.friction)
+            collide(a.body, b.body, at, seen.normal, self._bounce(a, b, seen, at, sample), self.impact.friction)
         for _ in range(_ROUNDS if len(touching) < 2 else _ROUNDS_OF_MANY):
             moved = False
             for (a, b, seen), points in zip(touching, corners, strict=True):
                 for at in points:
-                    moved |= collide(a.body, b.body, at, seen.normal, 0.0, self.friction)
+                    moved |= collide(a.body, b.body, at, seen.normal, 0.0, self.impact.friction)
             for hitch in self.hitches:
                 moved |= self._joined(hitch, equalize_velocities)
             if not moved:
@@ -268,7 +267,7 @@ class Wreck:
             return 0.0
         closing = approach(a.body, b.body, at, seen.normal)
         left = max(self._held_s(a, b, sample), _SHORTEST_LEFT_S)
-        most = min(self.restitution, most_restitution(closing))
+        most = min(self.impact.restitution, most_restitution(closing))
         return min(most, 0.5 * max(-seen.gap_m, 0.0) / (left * max(closing, 1e-6)))
 
     def _keep_seen(self, a: Mover, b: Mover, seen: Separation, points: list[Point], sample: int) -> None:

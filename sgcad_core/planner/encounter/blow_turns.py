@@ -13,9 +13,9 @@ from sgcad_core.metrics.rest_error import compass_rad
 from sgcad_core.metrics.thresholds import DRIVING
 from sgcad_core.planner.actor_plan import Role
 from sgcad_core.planner.aftermath.blow import blow
+from sgcad_core.planner.aftermath.crush import corner_of, slanted
 from sgcad_core.planner.aftermath.ground_friction import Drag, locked_turning
-from sgcad_core.planner.aftermath.impact import FRICTION, RESTITUTION, Body, body
-from sgcad_core.planner.aftermath.rest_fit import Impact
+from sgcad_core.planner.aftermath.impact import USUAL, Body, Impact, body
 from sgcad_core.planner.aftermath.wreck_bodies import center_of, separation, touch_points
 from sgcad_core.planner.encounter.pairing import Encounter
 from sgcad_core.planner.motion import STEP_S, Motion
@@ -43,18 +43,20 @@ def _tells(role: Role) -> bool:
     return not role.actor.record.thing and (told.spin is not None or told.rest.facing_deg is not None)
 
 
-def misturned(found: Encounter, impacts: Sequence[Impact] = ((FRICTION, RESTITUTION),)) -> tuple[float, Impact]:
+def misturned(found: Encounter, impacts: Sequence[Impact] = (USUAL,)) -> tuple[float, Impact]:
     """Radians by which the vehicles would turn otherwise than told, both together, with the best of some frictions and
     restitutions, the first of equal ones; 0 where no rotation is told."""
     roles = found.first.role, found.second.role
     wanted = [_wanted(role, motion, own) for role, motion, own in zip(roles, *_clocks(found), strict=True)]
     first, second = (_moving(role, motion, own) for role, motion, own in zip(roles, *_clocks(found), strict=True))
-    touch = center_of(touch_points(first, second)), separation(first, second).normal
+    at, normal = center_of(touch_points(first, second)), separation(first, second).normal
+    glances = corner_of(first, second, normal) is not None
     grip = Drag(0.0, DRIVING.sliding_mps2(roles[0].surface))
     locked = [locked_turning(one, grip) for one in (first, second)]
 
     def off(impact: Impact) -> float:
-        after = blow((first, second), touch, impact[1], impact[0])
+        along = slanted(first, at, normal, impact.glance_rad) if glances else normal
+        after = blow((first, second), (at, along), impact)
         return sum(_off(turn, after[k], locked[k]) for k, turn in enumerate(wanted) if turn is not None)
 
     best = min(impacts, key=off)

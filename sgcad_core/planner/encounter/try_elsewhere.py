@@ -13,7 +13,7 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from sgcad_core.planner.actor_plan import comes_against
-from sgcad_core.planner.aftermath.rest_fit import IMPACTS, Impact
+from sgcad_core.planner.aftermath.impact import IMPACTS, Impact
 from sgcad_core.planner.encounter.blow_turns import misturned, turns_told
 from sgcad_core.planner.encounter.encounter_search import along_sides
 from sgcad_core.planner.encounter.motion_options import Option
@@ -34,7 +34,7 @@ class WholeCourse(NamedTuple):
 
 
 Unfold = Callable[[Encounter | None, Sequence[Impact]], WholeCourse]
-"""From an encounter and the frictions and restitutions to try."""
+"""From an encounter and the impacts to try."""
 
 _TOLD_PART = 1.0
 """Least cost of a missed part of the stated course."""
@@ -69,7 +69,7 @@ def least_missed(found: Encounter | None, unfold: Unfold) -> WholeCourse:
     found, *beside = beside_middle(found) or [found]
     best = unfold(found, IMPACTS)
     again = bool(best.scene.again)
-    usual = (best.scene.friction, best.scene.restitution)
+    usual = best.scene.impact
     others = chain(((other, usual) for other in beside), _like(found, usual, again=again))
     for other, impact in islice(others, _MOST_AGAIN if again else _MOST):
         if best.missed < _TOLD_PART:

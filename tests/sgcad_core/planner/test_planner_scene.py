@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from sgcad_core.planner.aftermath.impact import Impact
 from sgcad_core.planner.lines.path import Path
 from sgcad_core.planner.motion import Motion, stand
 from sgcad_core.planner.scene import Scene
@@ -45,7 +46,7 @@ def test_a_scene_that_did_not_change_is_simulated_once(monkeypatch: pytest.Monke
 @pytest.mark.parametrize(
     "change",
     [
-        lambda s: setattr(s, "friction", 0.2),
+        lambda s: setattr(s, "impact", Impact(friction=0.2)),
         lambda s: setattr(s, "surface", "ice"),
         lambda s: setattr(s.tracks["V1"], "mass", 900.0),
         lambda s: s.hitches.append(("V1", "V2", 3.0)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sgcad_core.planner.aftermath.rest_fit import IMPACTS
+from sgcad_core.planner.aftermath.impact import IMPACTS
 from sgcad_core.planner.encounter.blow_turns import misturned, turns_told
 from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.encounter_search import along_sides

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sgcad_core.planner.aftermath.rest_fit import IMPACTS
+from sgcad_core.planner.aftermath.impact import IMPACTS
 from sgcad_core.planner.encounter.conflict import Conflicts
 from sgcad_core.planner.encounter.encounter_search import _root, along_sides
 from sgcad_core.planner.encounter.try_elsewhere import WholeCourse, _speeds, least_missed
