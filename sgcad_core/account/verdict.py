@@ -12,7 +12,7 @@ from sgcad_core.account.inputs import ExecutedCase
 from sgcad_core.account.notes import Note
 from sgcad_core.account.records import Disagreement, Item, Kind, Verdict, is_of_map
 from sgcad_core.account.words import phrase
-from sgcad_core.kinds import ALLEY, DRIVEWAY, Maneuver
+from sgcad_core.kinds import ACROSS_LANES, ALLEY, DRIVEWAY, Maneuver
 from sgcad_core.metrics.untold_places import untold_places
 from sgcad_core.planner.encounter.maneuver_choices import UNTOLD
 from sgcad_core.planner.lines.turning import WIDE
@@ -158,8 +158,7 @@ def _is_base(made: ExecutedCase, vehicle: VehicleFacts) -> bool:
 def _changes_lanes(one: VehicleFacts, other: VehicleFacts) -> bool:
     """Whether two drive one way and one of them changes lanes, merges or passes: that is done in the lanes of one
     direction."""
-    moves = ("lane_change_left", "lane_change_right", "merge", "overtaking")
-    return one.heading == other.heading and any(v.maneuver in moves for v in (one, other))
+    return one.heading == other.heading and any(v.maneuver in ACROSS_LANES for v in (one, other))
 
 
 def _backs_out(made: ExecutedCase, vehicle: VehicleFacts) -> bool:

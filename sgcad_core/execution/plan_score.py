@@ -17,6 +17,7 @@ from sgcad_core.case.records import Scenario, Trajectory
 from sgcad_core.errors import InvalidOutput, Refused
 from sgcad_core.execution.contact import avoided, closest_approach, first_contact, realised
 from sgcad_core.execution.scenario import actor_infos
+from sgcad_core.kinds import ACROSS_LANES
 from sgcad_core.metrics.drivability import driving_peaks, first_touches
 from sgcad_core.metrics.untold_places import untold_places
 from sgcad_core.planner import plan
@@ -35,7 +36,7 @@ _FORCED = 2.0
 300 development reports it did, and both had been read wrongly; of vehicles on the road the first reading was right."""
 _AWRY_RAD: dict[Maneuver, float] = {
     **dict.fromkeys(("straight", "slowing"), math.radians(30)),
-    **dict.fromkeys(("lane_change_left", "lane_change_right", "merge", "overtaking"), math.radians(45)),
+    **dict.fromkeys(ACROSS_LANES, math.radians(45)),
 }  # fmt: skip
 """Turn beyond which a maneuver along a road is not visible as such."""
 MOST = 4

@@ -31,10 +31,11 @@ from sgcad_core.kinds.junctions import (  # fmt: skip
     junction_kind,
     unsupported_kind,
 )
-from sgcad_core.kinds.maneuvers import CHANGES, CRASH_ROLES, MANEUVERS, OVER_A_LINE, CrashRole, Maneuver
+from sgcad_core.kinds.maneuvers import ACROSS_LANES, CHANGES, CRASH_ROLES, MANEUVERS, OVER_A_LINE, CrashRole, Maneuver
 from sgcad_core.kinds.roads import ALLEY, DRIVEWAY, JOINING, RAMP, ROAD, ROADS, UNPAINTED, RoadKind
 
 __all__ = [
+    "ACROSS_LANES",
     "ACTORS",
     "ALLEY",
     "CHANGES",

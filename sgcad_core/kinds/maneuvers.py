@@ -13,6 +13,8 @@ Maneuver = Literal[
 MANEUVERS: tuple[Maneuver, ...] = get_args(Maneuver)
 CHANGES: Mapping[Maneuver, int] = {"lane_change_left": 1, "lane_change_right": -1}
 """Maneuvers into a lane beside the own one, and its side: 1 to the left."""
+ACROSS_LANES: frozenset[Maneuver] = frozenset({*CHANGES, "merge", "overtaking"})
+"""Maneuvers over the lanes of one direction."""
 OVER_A_LINE: tuple[Maneuver, ...] = (
     "crossing_centerline", "departing_road_left", "departing_road_right", "lane_change_left", "lane_change_right",
 )  # fmt: skip

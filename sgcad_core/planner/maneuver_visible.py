@@ -11,10 +11,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from sgcad_core.geometry.plane import Floats
+from sgcad_core.kinds import ACROSS_LANES
 from sgcad_core.metrics.labels.course_label_match import brakes, steers
 from sgcad_core.metrics.labels.observed_crash import BEFORE_S
 from sgcad_core.planner.actor_plan import Role, usual_speed
-from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING
+from sgcad_core.planner.encounter.meeting_place import TURNING
 from sgcad_core.planner.lines.actor_course import Course
 from sgcad_core.planner.motion import STEP_S, Motion
 from sgcad_core.records.course import CourseTold

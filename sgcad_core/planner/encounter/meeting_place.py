@@ -16,7 +16,6 @@ from sgcad_core.records.specs import Actor, Maneuver
 
 STANDING: frozenset[Maneuver] = frozenset({"stopped", "parked"})
 TURNING: frozenset[Maneuver] = frozenset({"turn_left", "turn_right", "u_turn"})
-ACROSS_LANES: frozenset[Maneuver] = frozenset({"lane_change_left", "lane_change_right", "merge", "overtaking"})
 _MID_BLOCK: frozenset[Maneuver] = frozenset({
     "crossing_centerline", "overtaking", "lane_change_left", "lane_change_right", "departing_road_left",
     "departing_road_right",

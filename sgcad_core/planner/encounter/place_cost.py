@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sgcad_core.geometry.plane import Floats
+from sgcad_core.kinds import ACROSS_LANES
 from sgcad_core.planner.actor_plan import Drift, Role, along_with, line_m
-from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, TURNING, stop_m, turns_off
+from sgcad_core.planner.encounter.meeting_place import TURNING, stop_m, turns_off
 from sgcad_core.planner.lines.axle_to_box import offsets
 from sgcad_core.planner.lines.departures import departs, departure_sides, has_median, in_a_mouth, on_the_road
 from sgcad_core.planner.lines.path import Path

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sgcad_core.geometry.plane import SIDES, Floats, gaps_where_near
+from sgcad_core.kinds import ACROSS_LANES
 from sgcad_core.planner.actor_plan import Role, facing
-from sgcad_core.planner.encounter.meeting_place import ACROSS_LANES, place_near, stop_m
+from sgcad_core.planner.encounter.meeting_place import place_near, stop_m
 from sgcad_core.planner.lines.departures import DEPARTURES
 from sgcad_core.planner.motion import STEP_S
 from sgcad_core.planner.scene import Scene, Track

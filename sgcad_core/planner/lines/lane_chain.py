@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from sgcad_core.kinds import ACROSS_LANES
 from sgcad_core.planner.lines.path import TURN_BACK_M
 from sgcad_core.planner.lines.route import Route, Way, turn_angle
 from sgcad_core.records.specs import Actor
@@ -18,7 +19,6 @@ _ONWARD_RAD = 0.6
 """A way that turns less goes straight on."""
 _BACK_RAD = math.radians(140.0)
 """A way that turns more leads back: into the lane that a vehicle reaches in one sweep."""
-_CHANGES = ("lane_change_left", "lane_change_right", "merge", "overtaking")
 
 
 def lane_chain(
@@ -117,7 +117,7 @@ def merged(
 ) -> tuple[list[Lane], list[Connection | None]]:
     """The chain with a merge along the taper where its lane is closed ahead; maneuvers that change lanes are left
     alone."""
-    if actor.maneuver in _CHANGES:
+    if actor.maneuver in ACROSS_LANES:
         return lanes, links
     for i, way in enumerate(route.ways[:-1]):
         taper = taper_of(graph, way.id)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sgcad_core.kinds import CHANGES
+from sgcad_core.kinds import ACROSS_LANES, CHANGES
 from sgcad_core.reading.actors.people_objects import is_person
 from sgcad_core.reading.contacts.contact_records import AREAS, GROUND, ContactFacts, ContactMention
 from sgcad_core.reading.inference.inference_state import (
@@ -21,8 +21,7 @@ from sgcad_core.reading.text.compass import OPPOSITE_HAND, between
 from sgcad_core.reading.text.sentence_roles import STORY_ROLES
 from sgcad_core.records.specs import Area
 
-_SIDLING = ("lane_change_left", "lane_change_right", "merge", "overtaking")
-_BENT = ("turn_left", "turn_right", "u_turn", *_SIDLING)
+_BENT = ("turn_left", "turn_right", "u_turn", *ACROSS_LANES)
 
 
 def infer_contacts(crash: CrashTold, inferred: CrashInferred, pairs: list[ContactMention]) -> list[ContactFacts]:
@@ -128,7 +127,7 @@ def _goes_along(inferred: CrashInferred, mention: ContactMention) -> tuple[Area,
     a, b = mention.actor, mention.other
     end, _, hand = (mention.other_area or "").partition("/")
     along = between(inferred.headings.get(a, "N"), inferred.headings.get(b, "N")) == 0
-    moves = inferred.maneuvers[a] in ("straight", *_SIDLING) and inferred.maneuvers[b] != "backing"
+    moves = inferred.maneuvers[a] in ("straight", *ACROSS_LANES) and inferred.maneuvers[b] != "backing"
     if mention.actor_area or mention.mutual or not (along and moves and end == "front" and hand in OPPOSITE_HAND):
         return None
     return OPPOSITE_HAND[hand], hand  # type: ignore[return-value]
@@ -162,7 +161,7 @@ def _corners(crash: CrashTold, inferred: CrashInferred, mention: ContactMention)
     skidding = any(crash.motions[v].has_cue("lost_control", 3) for v in pair) and turn == 0
     bent = skidding or turn % 180 != 0 or any(inferred.maneuvers[v] in _BENT for v in pair)
     zones = {mention.actor: mention.actor_area, mention.other: mention.other_area}
-    sidles = any(inferred.maneuvers[v] in _SIDLING for v in pair)
+    sidles = any(inferred.maneuvers[v] in ACROSS_LANES for v in pair)
     along = {v: turn == 0 and (sidles or inferred.maneuvers[v] in _BENT) for v in pair}
     areas: dict[str, Area | None] = {}
     for me, you in ((mention.actor, mention.other), (mention.other, mention.actor)):
@@ -242,14 +241,14 @@ def complete_areas(
         if _standing(inferred, a) and not _standing(inferred, b) and area_b in ("left", "right"):
             return _flank_facing(area_b, turn), area_b
         if (
-            {inferred.maneuvers[a], inferred.maneuvers[b]} & set(_SIDLING)
+            {inferred.maneuvers[a], inferred.maneuvers[b]} & ACROSS_LANES
             and area_b in ("left", "right")
             and apart(turn, 0) <= 45
         ):
             return ("right" if area_b == "left" else "left"), area_b
         return ("front", area_b) if area_b != "front" else (side_hit(at_contact), area_b)  # type: ignore[return-value]
     if (
-        {inferred.maneuvers[a], inferred.maneuvers[b]} & set(_SIDLING)
+        {inferred.maneuvers[a], inferred.maneuvers[b]} & ACROSS_LANES
         and area_a in ("left", "right")
         and apart(turn, 0) <= 45
     ):

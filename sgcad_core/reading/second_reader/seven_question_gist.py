@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from pydantic import Field
 
-from sgcad_core.kinds import ACTORS, Maneuver, kind_of_letter
+from sgcad_core.kinds import ACROSS_LANES, ACTORS, Maneuver, kind_of_letter
 from sgcad_core.reading.contacts.contact_records import ContactFacts
 from sgcad_core.reading.crash_facts import CrashFacts
 from sgcad_core.records.answer_schema import Spec
@@ -47,7 +47,7 @@ _ALIKE: tuple[frozenset[Value], ...] = (
 _SHOWN: tuple[frozenset[Value], ...] = (
     frozenset({"straight", "slowing", "negotiating_curve", "overtaking", "crossing_centerline",
                "departing_road_left", "departing_road_right"}),
-    frozenset({"lane_change_left", "lane_change_right", "merge", "overtaking"}),
+    frozenset(ACROSS_LANES),
     frozenset({"turn_left", "u_turn"}),
 )  # fmt: skip
 """Maneuvers that codes of incident reports do not tell apart: driven up to the contact they may look the same."""
